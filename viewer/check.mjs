@@ -456,6 +456,8 @@ async function stepOn(page, samples) {
     const { step } = await measured(page);
     await page.click("#forth");
     await until(page, (step) => window.viewer.measured.step > step, step);
+    // On a slow machine a sample takes some frames.
+    for (let last = step, now = -1; now !== last; await page.waitForTimeout(250)) [last, now] = [now, (await measured(page)).step];
   }
   const { step, digest } = await measured(page);
   return { step, digest };

@@ -5,7 +5,7 @@ import { showField } from "./field-legend";
 import type { Film } from "./film";
 import { History } from "./history";
 import { listenToKeys } from "./keys";
-import { element, isStillAsked, listenToLook, listenToSizes, say } from "./page";
+import { element, isStillAsked, listenToDialogs, listenToLook, listenToSizes, say } from "./page";
 import { listenToLooks } from "./looks";
 import { giveLoop } from "./loop";
 import { listenToPointers } from "./pointers";
@@ -405,8 +405,7 @@ class Page {
     listenToShare(this.address, () => this.tube?.title ?? "tube");
     for (const kind of ["png", "svg", "csv"] as const) element(`loop-${kind}`).onclick = () => this.tube && this.shownFrame && giveLoop(kind, this.readout.charts.loop, this.film, this.tube, this.shownFrame);
     element("grain-close").onclick = () => this.pick(-1);
-    for (const dialog of document.querySelectorAll("dialog"))
-      dialog.onclick = (event) => event.target === dialog && dialog.close();
+    listenToDialogs();
     const time = element<HTMLInputElement>("time");
     time.oninput = () => this.scrub(time.valueAsNumber);
     const speed = element<HTMLSelectElement>("speed");

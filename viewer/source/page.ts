@@ -58,3 +58,15 @@ export function listenToSizes(changed: () => void): void {
   const sizes = new ResizeObserver(changed);
   for (const id of ["stage", "flow", "loop", "profile", "map", "space-time"]) sizes.observe(element(id));
 }
+
+/** Closes dialogs by their buttons and by a click beside them; the page's policy lets no form do it. */
+export function listenToDialogs(): void {
+  for (const dialog of document.querySelectorAll("dialog")) {
+    dialog.onclick = (event) => event.target === dialog && dialog.close();
+    for (const button of dialog.querySelectorAll<HTMLButtonElement>("form button"))
+      button.onclick = (event) => {
+        event.preventDefault();
+        dialog.close(button.value);
+      };
+  }
+}

@@ -158,7 +158,8 @@ export function drawMap(
   view: { middle: number; half: number }, colours: Ink,
 ): void {
   const context = canvas.getContext("2d");
-  if (!context) return;
+  // A small version of the page has none.
+  if (!context || canvas.clientWidth === 0) return;
   const density = Math.min(2, devicePixelRatio);
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   canvas.width = Math.round(width * density);
