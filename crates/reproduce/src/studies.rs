@@ -115,6 +115,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("divergence-coarse"),
     study!("near-12x16"),
     study!("near-coarse"),
+    study!("near-fine"),
     study!("branches-12x16"),
     study!("branches-fine"),
     study!("branches-coarse"),
