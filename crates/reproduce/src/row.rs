@@ -61,6 +61,12 @@ impl Lattice {
         rings_per_wave: 14,
     };
 
+    /// Spheres per area \[1/d^2\] of a straight tube of this radius and wavelength \[d\].
+    pub(crate) fn density(self, radius: f64, wavelength: f64) -> f64 {
+        let spheres = self.spheres_per_ring * self.rings_per_wave;
+        spheres as f64 / (core::f64::consts::TAU * radius * wavelength)
+    }
+
     /// "fine", "coarse", or the numbers.
     pub fn name(self) -> String {
         match self {
@@ -224,9 +230,7 @@ impl<'a> Row<'a> {
 
     /// Wall spheres per area of the straight tube \[1/d^2\].
     pub(crate) fn wall_density(&self) -> f64 {
-        let lattice = self.lattice();
-        let area = core::f64::consts::TAU * self.radius() * self.wavelength();
-        (lattice.spheres_per_ring * lattice.rings_per_wave) as f64 / area
+        self.lattice().density(self.radius(), self.wavelength())
     }
 
     /// Time reached \[t\].

@@ -16,7 +16,7 @@ use crate::thresholds::MOST_ESCAPED;
 pub(crate) struct Wall {
     /// What the names of its studies end with.
     pub(crate) study: &'static str,
-    lattice: Lattice,
+    pub(crate) lattice: Lattice,
     arrangement: &'static str,
 }
 

@@ -7,19 +7,10 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q12.md"));
 
-/// Those that were there before the predictions.
-const KNOWN: [&str; 6] = [
-    "restitution",
-    "softness",
-    "wavelength",
-    "radius",
-    "roughness",
-    "walls",
-];
-
 /// Tubes that were computed after the predictions, to test them.
 const TEST: &str = "wall-stiffness";
-/// The last two are of waves so slow that grains feel each sphere of the wall.
+/// First those that were there before the predictions; the last two are of waves so slow that grains feel each sphere of the
+/// wall.
 const STUDIES: &[&str] = &[
     "restitution",
     "softness",
@@ -31,6 +22,10 @@ const STUDIES: &[&str] = &[
     "small-strain-rate-fine",
     "small-strain-rate-coarse",
 ];
+
+fn is_known(study: &str) -> bool {
+    STUDIES[..6].contains(&study)
+}
 
 pub(super) const CLAIM: Claim = Claim::new("Q12", PROSE, STUDIES, examine);
 
@@ -201,7 +196,7 @@ impl Prediction {
                 group.study,
                 told.map(|tube| (self.of(tube), tube.narrowing)),
             )?;
-            let known = KNOWN.contains(&group.study);
+            let known = is_known(group.study);
             Some(if known { points } else { points.open() })
         });
         ChartPanel::new(self.axis, "measured, (2*a* − *w*_{c})/*d*")
@@ -239,18 +234,18 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         groups.push(Group { study, tubes });
     }
     groups.retain(|group| !group.tubes.is_empty());
-    let of = |studies: &[&str]| -> Vec<&Tube> {
-        let those = groups.iter().filter(|group| studies.contains(&group.study));
+    let of = |is_of: fn(&str) -> bool| -> Vec<&Tube> {
+        let those = groups.iter().filter(|group| is_of(group.study));
         those.flat_map(|group| &group.tubes).collect()
     };
-    let (known, tests) = (of(&KNOWN), of(&[TEST]));
+    let (known, tests) = (of(is_known), of(|study| study == TEST));
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());
     if known.is_empty() {
         return Ok(PROSE.nothing(statistics, &Q12_NEEDED));
     }
     let predictions = Prediction::all_from(&known);
     let mut draft = Draft::of(PROSE);
-    let density = density_of_the_source(&predictions[1].constant, known[0]);
+    let density = density_of_the_source(&predictions[1].constant);
     draft.quantity("density of the source", &[], density);
     let mut told = Vec::new();
     for one in &predictions {
@@ -270,15 +265,24 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let panels = predictions.iter().map(|one| one.panel(&groups));
     let chart = grid(3, panels).share_y().legend(LegendPlace::Below);
     draft.chart("predictions", &[], chart)?;
-    let summary = PROSE.text("summary", values!(density, told = told.join("; ")));
+    let walls = WALLS.iter().map(|wall| {
+        let density = wall.lattice.density(RADIUS, WAVELENGTH);
+        format!("{} has {}", wall.name(), number(density, 2))
+    });
+    let walls = walls.collect::<Vec<_>>().join(", ");
+    let summary = PROSE.text("summary", values!(density, told = told.join("; "), walls));
     let verdict = Verdict::answered_if(tests.len() >= LEAST_TESTS);
     Ok(draft.concluded(verdict, summary, statistics, &Q12_NEEDED))
 }
 
-/// Wall spheres per area at which the stiffness of the wall gives the slope of the source, in a tube of the presets' lengths
-/// and grains: slope = −C lambda (m lambda a/(k sigma))^(1/2)/d^2.
-fn density_of_the_source(constant: &Uncertain, tube: &Tube) -> Uncertain {
-    let slope = constant.scaled(tube.wavelength / SLOPE);
-    let density = slope.value * slope.value * tube.wavelength * tube.radius / tube.stiffness;
+/// a and lambda of the presets \[d\], whose grains have k = 1.
+const RADIUS: f64 = 1.5;
+const WAVELENGTH: f64 = 10.0;
+
+/// Wall spheres per area at which the stiffness of the wall gives the slope of the source in the presets' tube:
+/// slope = −C lambda (m lambda a/(k sigma))^(1/2)/d^2.
+fn density_of_the_source(constant: &Uncertain) -> Uncertain {
+    let slope = constant.value * WAVELENGTH / SLOPE;
+    let density = slope * slope * WAVELENGTH * RADIUS;
     Uncertain::normal(density, 2.0 * density * constant.error / constant.value)
 }
