@@ -306,6 +306,13 @@ fn a_jump_does_the_same_work() {
 /// Those that the machine lacks are replaced by the widest that it has; and any number of threads.
 #[test]
 fn all_instructions_give_the_same_bits() {
+    // One that the machine lacks stands for all of these: the widest that there are take their place.
+    let (here, lacking): (Vec<_>, Vec<_>) =
+        (Instructions::ALL.iter()).partition(|set| set.1.available());
+    let sets: Vec<_> = here
+        .into_iter()
+        .chain(lacking.into_iter().take(1))
+        .collect();
     for (seed, row) in (0..).zip(all_rows()) {
         for number in [9, 60] {
             let state = random(row, number, seed);
@@ -317,7 +324,7 @@ fn all_instructions_give_the_same_bits() {
             };
             let plain = end(Instructions::Plain, 1);
             assert_eq!(plain.0, Ok(()));
-            for &(name, instructions, _) in Instructions::ALL {
+            for &&(name, instructions, _) in &sets {
                 assert!(end(instructions, 1) == plain, "{name}, {row:?}");
             }
             assert!(end(Instructions::Plain, 2) == plain, "two threads, {row:?}");
