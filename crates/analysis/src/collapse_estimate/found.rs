@@ -15,8 +15,9 @@ const EVALUATIONS: usize = 80;
 const REACH: f64 = 50.0;
 /// Most places at which an end is sought once it is enclosed.
 const MOST_CUTS: u32 = 12;
-/// Factor of the errors from which on one curve does not describe the points.
-const MOST_STRETCH: f64 = 3.0;
+/// Factor of the errors from which on either the errors or the scaling are wrong: twenty points exceed it by
+/// chance once in a thousand data sets.
+const MOST_STRETCH: f64 = 1.5;
 /// Most free parameters beside a correction for which intervals were found to cover as they should.
 const MOST_BESIDE_A_CORRECTION: usize = 3;
 

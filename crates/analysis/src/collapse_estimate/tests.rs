@@ -362,6 +362,9 @@ fn errors_are_stretched_and_what_cannot_be_estimated_is_refused() {
     let plain = estimate(&curves).unwrap();
     let understated = estimate(&kind.curves(1, 0.0, 2.0)).unwrap();
     assert!((plain.stretch - 1.0).abs() < 0.2 && (understated.stretch - 2.0).abs() < 0.4);
+    let is_said =
+        |doubt: &String| doubt.contains("times as far from one curve as their errors say");
+    assert!(understated.doubts.iter().any(is_said) && !plain.doubts.iter().any(is_said));
     let ratio = understated.parameters[0].error / plain.parameters[0].error;
     assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
     let again = estimate(&curves).unwrap();
