@@ -1,40 +1,61 @@
 #!/usr/bin/env bash
-# The documentation book: references made from the schemas and from Python's docstrings, pages by mdBook (target/book) that
-# need no network, every block executed, every test that the theory names looked for, every link followed.
+# The documentation book, target/book: references made from the program, from Python's docstrings and by rustdoc; every block
+# executed; every test that an explanation names looked for; pages by mdBook that need no network; every link followed.
+# What is built already can be named: PROGRAM (the program), PYTHON (an interpreter that has the package with Matplotlib),
+# RUSTDOC (a folder that `cargo doc` filled).
 set -euo pipefail
 cd "$(dirname "$0")/.."
+source=docs/book/src
+targets=${CARGO_TARGET_DIR:-$PWD/target}
 
 step() { printf '\n== %s\n' "$*"; }
 
-step "references from the schemas"
-cargo build --release --locked --package peristalsis
+step "references from the program"
+if [ -z "${PROGRAM:-}" ]; then
+    cargo build --release --locked --package peristalsis
+    PROGRAM=$targets/release/peristalsis
+fi
 mkdir -p target/book-reference
-target/release/peristalsis schema --markdown > target/book-reference/configuration.md
-target/release/peristalsis study schema --markdown > target/book-reference/study.md
+"$PROGRAM" schema --markdown > target/book-reference/configuration.md
+"$PROGRAM" study schema --markdown > target/book-reference/study.md
+python3 scripts/book_commands.py "$PROGRAM" > target/book-reference/commands.md
 python3 scripts/book_api.py > target/book-reference/api.md
 
-step "tests that the theory names"
-names=$(grep -oE '`[a-z0-9_]{12,}`' docs/book/src/theory.md | tr -d '`' | grep _ | grep -v '^energy_residual$' | sort -u)
+step "tests that the explanations name"
+names=$(grep -hE '^Tests?:|: `' $source/explanations/*.md | grep -oE '`[a-z0-9_]{12,}`' | tr -d '`' | grep _ | grep -v '^energy_residual$' | sort -u)
 for name in $names; do
     grep -rqE "fn $name\(" crates --include='*.rs' || { echo "there is no test $name"; exit 1; }
 done
 echo "$(wc -w <<< "$names") tests"
 
 step "the blocks of the book, executed"
-python3 scripts/run_snippets.py --only sh --together docs/book/src/tutorial.md docs/book/src/how-to.md \
-    docs/book/src/installation.md docs/book/src/troubleshooting.md
+# In the order of the book, in one folder: a page may use what a page before it made.
+pages=$(grep -oE '\(([a-z/-]+\.md)\)' $source/SUMMARY.md | tr -d '()' | sed "s#^#$source/#")
+python3 scripts/run_snippets.py --only sh --together --programs "$(dirname "$PROGRAM")" $(grep -lE '^```sh' $pages)
+
+environment=target/book-python
+[ -x $environment/bin/python ] || python3 -m venv $environment
+if [ -z "${PYTHON:-}" ]; then
+    $environment/bin/pip install --quiet '.[plot]'
+    PYTHON=$PWD/$environment/bin/python
+fi
+"$PYTHON" scripts/run_snippets.py --only python $(grep -lE '^```python' $pages)
 
 step "pages"
 if ! mdbook=$(command -v mdbook); then
     mdbook=$PWD/target/mdbook/bin/mdbook
     [ -x "$mdbook" ] || cargo install --quiet --locked mdbook --root target/mdbook
 fi
-[ -x target/book-python/bin/python ] || python3 -m venv target/book-python
-target/book-python/bin/pip install --quiet latex2mathml
-MDBOOK_PREPROCESSOR__PAGES__COMMAND="$PWD/target/book-python/bin/python $PWD/scripts/book_pages.py" "$mdbook" build docs/book
+$environment/bin/pip install --quiet latex2mathml
+MDBOOK_PREPROCESSOR__PAGES__COMMAND="$PWD/$environment/bin/python $PWD/scripts/book_pages.py" "$mdbook" build docs/book
 cp -r docs/images target/book/
-grep -q "wall.keep" target/book/configuration.html
-grep -q "<math" target/book/theory.html
+if [ -z "${RUSTDOC:-}" ]; then
+    cargo doc --workspace --no-deps --locked
+    RUSTDOC=$targets/doc
+fi
+cp -r "$RUSTDOC" target/book/rust
+grep -q "wall.keep" target/book/reference/configuration.html
+grep -q "<math" target/book/explanations/contact-laws.html
 
 step "links and pictures"
 python3 scripts/check_links.py target/book

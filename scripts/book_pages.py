@@ -1,31 +1,35 @@
 """mdBook's preprocessor for this book: formulas as MathML, which browsers draw by themselves, and links that hold.
 
-Pages include files of the repository, whose links are relative to where they stand there: those to files that are pages
-of the book lead to the page, pictures to the book's copy.
+Pages include files of the repository, whose links are relative to where they stand there. Links to files that are pages of
+the book lead to the page, pictures to the book's copy.
 """
 
 import json
+import posixpath
 import re
 import sys
 
 import latex2mathml.converter
 
-#: Files of the repository that are pages of the book.
+#: Files of the repository that are pages of the book, beside those in its own folder.
 PAGES = {
-    "CONVENTIONS.md": "conventions.md",
-    "VALIDATION.md": "validation.md",
-    "docs/verification.md": "verification.md",
-    "BENCHMARKS.md": "benchmarks.md",
-    "ARCHITECTURE.md": "developers.md",
-    "docs/design.md": "developers.md",
-    "docs/pictures.md": "pictures.md",
-    "docs/python/collapse.md": "collapse.md",
-    "crates/python/README.md": "python.md",
+    "README.md": "introduction.md",
+    "SUMMARY.md": "introduction.md",
+    "VALIDATION.md": "results/claims.md",
+    "docs/verification.md": "results/verification.md",
+    "BENCHMARKS.md": "results/benchmarks.md",
+    "ARCHITECTURE.md": "developers/architecture.md",
+    "CHANGELOG.md": "developers/changelog.md",
+    "CONTRIBUTING.md": "developers/contributing.md",
+    "CODE_OF_CONDUCT.md": "developers/contributing.md",
+    "SECURITY.md": "developers/contributing.md",
+    "THIRD-PARTY.md": "developers/third-party.md",
+    "crates/python/README.md": "guides/python.md",
 }
 #: Code, in which a dollar is a dollar and a bracket is a bracket; formulas; links.
 CODE = re.compile(r"(^```.*?^```$|`[^`\n]+`)", re.MULTILINE | re.DOTALL)
 FORMULA = re.compile(r"\$\$(.+?)\$\$|\$([^$\n]+?)\$", re.DOTALL)
-LINK = re.compile(r"(?<=\]\()(?!https?:|#)(?:\.\./|\./)*([^)\s#]+)(#[^)\s]*)?(?=\))")
+LINK = re.compile(r"(?<=\]\()(?!https?:|mailto:|#)([^)\s#]+)(#[^)\s]*)?(?=\))")
 
 
 def formula(match: re.Match[str]) -> str:
@@ -38,24 +42,32 @@ def formula(match: re.Match[str]) -> str:
     return re.sub(r"(?<=>)([*_\\`\[\]])(?=<)", lambda sign: f"&#{ord(sign[1])};", text)
 
 
-def link(match: re.Match[str], pages: set[str]) -> str:
+def link(match: re.Match[str], folder: str, pages: set[str]) -> str:
+    """The link of a page in `folder`, itself or of a file that the page includes."""
     target, anchor = match[1], match[2] or ""
-    if target in pages:
+    if posixpath.normpath(posixpath.join(folder, target)) in pages:
         return match[0]
-    if target in PAGES:
-        return PAGES[target] + anchor
-    if "images/" in target:
-        return "images/" + target.partition("images/")[2]
-    sys.exit(f"a link leads to {target}, which is no page of the book")
+    bare = re.sub(r"^(\.\.?/)*((docs/)?book/src/)?", "", target)
+    if "images/" in bare:
+        found = "images/" + bare.partition("images/")[2]
+    elif bare in pages:
+        found = bare
+    elif bare in PAGES and PAGES[bare] in pages:
+        found = PAGES[bare]
+    elif bare.startswith("rust/"):
+        found = bare
+    else:
+        sys.exit(f"a link in {folder or 'the book'} leads to {target}, which is no page of the book")
+    return posixpath.relpath(found, folder or ".") + anchor
 
 
-def prepared(text: str, pages: set[str]) -> str:
+def prepared(text: str, folder: str, pages: set[str]) -> str:
     pieces = CODE.split(text)
     for number in range(0, len(pieces), 2):
         # A mean, no element of HTML.
         piece = re.sub(r"<([a-z])>(?!.*</\1>)", r"&lt;\1&gt;", pieces[number])
         piece = FORMULA.sub(formula, piece)
-        pieces[number] = LINK.sub(lambda match: link(match, pages), piece)
+        pieces[number] = LINK.sub(lambda match: link(match, folder, pages), piece)
     return "".join(pieces)
 
 
@@ -71,7 +83,7 @@ def main() -> None:
     all_chapters = chapters(book.get("items") or book["sections"])
     pages = {chapter["path"] for chapter in all_chapters if chapter["path"]}
     for chapter in all_chapters:
-        chapter["content"] = prepared(chapter["content"], pages)
+        chapter["content"] = prepared(chapter["content"], posixpath.dirname(chapter["path"] or ""), pages)
     json.dump(book, sys.stdout)
 
 

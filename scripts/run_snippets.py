@@ -27,13 +27,15 @@ PARSED = {
     r"peristalsis view\b": "waits for a browser",
     r"peristalsis reproduce( --(full|check) .*| --fresh| --quick)?$": "takes minutes to hours",
     r"peristalsis study (run|status|export) \S*(examples/studies/|stores/)jamming-width": "takes some minutes",
-    r"peristalsis run --preset frictional .*(--trajectory|contact\.static_friction=0)": "takes half a minute",
     r"peristalsis render .*--film": "takes a minute",
 }
 #: Commands that are not run at all.
 LEFT_OUT = {r"cargo test\b": "a check of its own", r"cargo install\b": "builds the program anew", r"just\b": "a recipe of its own"}
 #: Pictures of a page and the file that the block that makes it leaves: the same bytes.
-PICTURES = {"README.md": {"docs/images/flow.png": "runs/frictionless-1/flow.png"}}
+PICTURES = {
+    "README.md": {"docs/images/flow.png": "runs/frictionless-1/flow.png"},
+    "first-transition.md": {"docs/images/flow.png": "narrow/flow.png", "docs/images/flow-wide.png": "wide/flow.png"},
+}
 
 
 def shell(text: str) -> str:
@@ -102,7 +104,6 @@ def run(page: str, folder: pathlib.Path, only: str | None, programs: pathlib.Pat
                     shutil.copyfile(folder / left, ROOT / picture)
                 if (folder / left).read_bytes() == (ROOT / picture).read_bytes():
                     del pictures[picture]
-                draw = False
     if not number:
         sys.exit(f"{page} has no block to run")
     if pictures and only != "python":

@@ -1,4 +1,4 @@
-"""Observables as CONVENTIONS.md defines them, from places and velocities alone: the same function for both programs."""
+"""Observables as docs/book/src/reference/conventions.md defines them, from places and velocities alone: the same function for both programs."""
 
 from __future__ import annotations
 

@@ -384,7 +384,7 @@ fn errors_are_stretched_and_what_cannot_be_estimated_is_refused() {
     assert_refused!(estimate(&few) => TooFew { found: 5, .. });
 }
 
-/// The table of docs/python/collapse.md, row by row:
+/// The table of docs/book/src/guides/collapse.md, row by row:
 /// `SETS=400 ROWS=0,1 cargo test --release -p peristalsis-analysis --lib -- --ignored coverage_of_all_kinds --nocapture`.
 #[test]
 #[ignore = "takes hours"]

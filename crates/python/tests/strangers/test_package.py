@@ -70,7 +70,7 @@ def test_the_package_says_whose_it_is_and_brings_the_command() -> None:
 def test_the_book_has_its_pages() -> None:
     """PYTHON, low: no installation page, Python guide, reference, columns of studies, guide to the viewer, troubleshooting."""
     summary = (ROOT / "docs" / "book" / "src" / "SUMMARY.md").read_text(encoding="utf-8")
-    for page in ("installation", "python", "api", "quantities", "viewer", "troubleshooting"):
+    for page in ("start/installation", "guides/python", "reference/api", "reference/quantities", "guides/viewer", "guides/troubleshooting"):
         assert f"({page}.md)" in summary
 
 

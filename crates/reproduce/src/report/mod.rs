@@ -101,7 +101,7 @@ impl Report {
         page::page(self).into_string()
     }
 
-    /// The findings for programs, as `docs/claims-json.md` describes them.
+    /// The findings for programs, as `docs/book/src/reference/claims-json.md` describes them.
     pub fn json(&self) -> String {
         json::text(self)
     }

@@ -89,7 +89,7 @@ fn texts_are_taken_as_they_are() {
 
 #[test]
 fn every_key_is_documented() {
-    let documentation = include_str!("../../../../docs/claims-json.md");
+    let documentation = include_str!("../../../../docs/book/src/reference/claims-json.md");
     let found = parsed(&specimen().unwrap().json());
     let mut keys = Vec::new();
     collect(&found, &mut keys);

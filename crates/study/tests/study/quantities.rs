@@ -6,7 +6,7 @@ use std::path::Path;
 
 use peristalsis_observe::{COLUMNS, PROFILE, Quantity, WAVES};
 
-const PAGE: &str = "docs/book/src/quantities.md";
+const PAGE: &str = "docs/book/src/reference/quantities.md";
 
 fn rows<'a, Of: 'static>(quantities: impl IntoIterator<Item = &'a Quantity<Of>>) -> String {
     let headings = quantities.into_iter().flat_map(|quantity| {
