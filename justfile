@@ -8,7 +8,7 @@ test:
 
 # The checks, the long validation runs, the audit of unsafe code, the clients of trajectories and the Python package (about three quarters of
 # an hour on two cores).
-full-check: check deny audit check-arm check-wasm check-windows clients check-viewer python slurm book
+full-check: check deny audit check-arm check-wasm check-windows clients check-viewer python slurm book check-memory
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
@@ -27,6 +27,12 @@ check-wasm:
 # The program for Windows under wine, and what of macOS can be checked elsewhere.
 check-windows:
     bash scripts/check_windows.sh
+
+# A run of a million periods, a study of many runs and a loop of calls in Python, each in bounded memory (a quarter of an
+# hour).
+check-memory *options:
+    cargo build --release -p peristalsis
+    target/python/bin/python scripts/check_memory.py {{options}}
 
 # Licences, duplicates and sources of every crate against deny.toml, where cargo-deny is installed.
 deny:

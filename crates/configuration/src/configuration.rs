@@ -330,7 +330,8 @@ impl Run {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Observe {
-    /// Samples of the time series in one wave period; a static run has 200 samples in all.
+    /// Samples of the time series in one wave period; a static run has 200 samples in all. In a run of more than 262,144
+    /// samples every two neighbours become one, again and again: memory is bounded.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub samples_per_period: u32,
     /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of one of them.

@@ -5,6 +5,8 @@ use crate::view::View;
 
 /// Origins kept at most, an even number; when there are more, every other one goes.
 const MOST_ORIGINS: usize = 16;
+/// Ends of periods kept at most, an even number; when there are more, every other one goes.
+const MOST_TIMES: usize = 1 << 16;
 
 /// Variances of axial displacements since origins spread over the whole run, taken at the end of each period.
 ///
@@ -13,9 +15,13 @@ const MOST_ORIGINS: usize = 16;
 /// part of a run has some of its own.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct AxialDispersion {
-    /// End of each period, the start of the run before them \[t\].
+    /// End of each period, or of every so many of a long run, the start of the run before them \[t\].
     times: Vec<f64>,
-    /// Periods from one origin to the next.
+    /// Periods from one of these times to the next.
+    each: u64,
+    /// Periods since the last of them.
+    since: u64,
+    /// Times from one origin to the next.
     stride: usize,
     origins: Vec<Origin>,
 }
@@ -23,11 +29,11 @@ pub struct AxialDispersion {
 /// Where the grains were, and how far apart they have moved since.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 struct Origin {
-    /// Number of periods before it.
+    /// Number of times before it.
     period: usize,
     /// z of the grains, turns round the tube counted \[d\].
     place: Vec<f64>,
-    /// Variance of their displacements at the end of each period since, of the grains inside then \[d^2\].
+    /// Variance of their displacements at each time since, of the grains inside then \[d^2\].
     variances: Vec<f64>,
 }
 
@@ -36,6 +42,7 @@ impl AxialDispersion {
     pub fn new(observer: &Observer) -> Self {
         let mut dispersion = Self {
             stride: 1,
+            each: 1,
             ..Self::default()
         };
         dispersion.begin(observer);
@@ -46,6 +53,8 @@ impl AxialDispersion {
     pub fn fits(&self, grains: usize) -> bool {
         let times = self.times.len();
         (1..=2 * times).contains(&self.stride)
+            && self.each.is_power_of_two()
+            && self.since < self.each
             && self.origins.iter().all(|origin| {
                 origin.place.len() == grains
                     && origin.period < times
@@ -55,6 +64,11 @@ impl AxialDispersion {
 
     /// Ends a period now, with an observer that has just taken its sample.
     pub fn end_period(&mut self, observer: &Observer, view: &View<'_>) {
+        self.since += 1;
+        if self.since < self.each {
+            return;
+        }
+        self.since = 0;
         let inside: Vec<usize> = (0..observer.unfolded.len())
             .filter(|&grain| view.inside[grain])
             .collect();
@@ -71,6 +85,9 @@ impl AxialDispersion {
 
     /// Notes the time, and an origin where one is due.
     fn begin(&mut self, observer: &Observer) {
+        if self.times.len() == MOST_TIMES {
+            self.halve();
+        }
         let period = self.times.len();
         self.times.push(observer.time);
         if !period.is_multiple_of(self.stride) {
@@ -87,6 +104,23 @@ impl AxialDispersion {
             self.origins
                 .retain(|origin| origin.period.is_multiple_of(stride));
         }
+    }
+
+    /// Makes the times half as many, before one that is to be of twice as many periods.
+    fn halve(&mut self) {
+        fn every_other(values: &[f64], first: usize) -> Vec<f64> {
+            values.iter().copied().skip(first).step_by(2).collect()
+        }
+        self.times = every_other(&self.times, 0);
+        self.origins
+            .retain(|origin| origin.period.is_multiple_of(2));
+        for origin in &mut self.origins {
+            origin.period /= 2;
+            // The first is of the time after the origin.
+            origin.variances = every_other(&origin.variances, 1);
+        }
+        self.stride = (self.stride / 2).max(1);
+        self.each *= 2;
     }
 
     /// Half the rates at which the variance grows from period to period, d var(z)/(2 dt), from the time `start` \[t\] on

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Ledger, Simulation};
 
+use crate::series::{Join, joined};
 use crate::view::View;
 
 /// Observables of one interval of time, in units of d, m, t; flow is positive along the wave.
@@ -80,6 +81,23 @@ pub struct Sample {
     pub wall_azimuthal_displacement_rms: f64,
     /// The energy ledger since the start.
     pub ledger: Ledger,
+}
+
+/// The sample of two intervals that follow each other.
+impl Join for Sample {
+    fn join(&mut self, own: u64, next: &Self, others: u64) {
+        let mean = |rate: fn(&Self) -> f64| joined(rate(self), own, rate(next), others);
+        *self = Self {
+            flow_rate: mean(|it| it.flow_rate),
+            flow_rate_ratio: mean(|it| it.flow_rate_ratio),
+            flow_rate_raw: mean(|it| it.flow_rate_raw),
+            flow_rate_ratio_raw: mean(|it| it.flow_rate_ratio_raw),
+            wall_power: mean(|it| it.wall_power),
+            body_power: mean(|it| it.body_power),
+            dissipated_power: mean(|it| it.dissipated_power),
+            ..*next
+        };
+    }
 }
 
 /// Makes samples of a simulation, one after another.

@@ -3,6 +3,7 @@
 use peristalsis_engine::Simulation;
 
 use crate::sample::Observer;
+use crate::series::{Join, Series, joined};
 use crate::view::{View, floor};
 
 /// The grains in one wave over one period.
@@ -24,6 +25,23 @@ pub struct WaveFlow {
     pub flow_rate_ratio: f64,
 }
 
+/// The flow of periods that follow each other.
+impl Join for WaveFlow {
+    fn join(&mut self, own: u64, next: &Self, others: u64) {
+        let grains = joined(self.grains, own, next.grains, others);
+        let carried = |flow: &Self| match flow.grains > 0.0 {
+            true => flow.grains * flow.flow_rate_ratio,
+            false => 0.0,
+        };
+        *self = Self {
+            grains,
+            flow_rate: joined(self.flow_rate, own, next.flow_rate, others),
+            flow_rate_ratio: joined(carried(self), own, carried(next), others) / grains,
+            ..*next
+        };
+    }
+}
+
 /// Sums over the samples of the period that is under way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 struct Sums {
@@ -42,7 +60,7 @@ pub struct WaveByWave {
     samples: u64,
     duration: f64,
     sums: Vec<Sums>,
-    flows: Vec<WaveFlow>,
+    flows: Series<WaveFlow>,
 }
 
 impl WaveByWave {
@@ -54,7 +72,7 @@ impl WaveByWave {
             samples: 0,
             duration: 0.0,
             sums: vec![Sums::default(); waves],
-            flows: Vec::new(),
+            flows: Series::new(waves),
         }
     }
 
@@ -63,6 +81,7 @@ impl WaveByWave {
         self.sums.len() == waves
             && self.samples_per_period == samples_per_period.max(1)
             && self.samples < self.samples_per_period
+            && self.flows.fits(waves)
     }
 
     /// Adds the interval between two states of the observer, seen from its end.
@@ -107,18 +126,18 @@ impl WaveByWave {
                 f64::NAN
             },
         });
-        self.flows.extend(flows);
+        self.flows.push(flows);
         self.sums.fill(Sums::default());
         (self.samples, self.duration) = (0, 0.0);
     }
 
-    /// Puts other flows of whole periods in place of those so far, which it answers.
-    pub fn replace_flows(&mut self, flows: Vec<WaveFlow>) -> Vec<WaveFlow> {
-        std::mem::replace(&mut self.flows, flows)
+    /// The series of flows, to be taken out and given back.
+    pub fn series(&mut self) -> &mut Series<WaveFlow> {
+        &mut self.flows
     }
 
     /// Every wave of every whole period so far, period by period.
     pub fn flows(&self) -> &[WaveFlow] {
-        &self.flows
+        self.flows.rows()
     }
 }

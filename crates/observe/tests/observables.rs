@@ -248,9 +248,9 @@ fn the_parts_of_a_wave_have_their_own_forces() {
     }
 }
 
-/// Free grains drift apart ballistically: the variance since an origin a time s ago is 0.0675 s^2.
-#[test]
-fn dispersion_counts_from_an_origin_of_the_late_part() {
+/// Free grains that drift apart ballistically, so many periods of so many steps long: the variance since an origin a time
+/// s ago is 0.0675 s^2.
+fn ballistic_dispersion(periods: u32, steps: u64) -> AxialDispersion {
     // Side by side, so that they never meet.
     let places = [-3.0, -1.0, 1.0, 3.0].map(|x| DVec3::new(x, 0.0, 3.0));
     let mut bodies = Bodies::grains_at_rest(places.to_vec(), vec![1.0; 4]);
@@ -259,13 +259,30 @@ fn dispersion_counts_from_an_origin_of_the_late_part() {
     let mut simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
     let mut observer = Observer::new(&simulation);
     let mut dispersion = AxialDispersion::new(&observer);
-    // More periods, of a time unit each, than origins are kept.
-    for _ in 0..100 {
-        simulation.advance(20).unwrap();
+    for _ in 0..periods {
+        simulation.advance(steps).expect("free grains");
         let view = View::of(&simulation);
         observer.sample(&view);
         dispersion.end_period(&observer, &view);
     }
+    dispersion
+}
+
+#[test]
+fn dispersion_of_a_long_run_is_seen_at_every_other_period() {
+    let found = ballistic_dispersion(70_000, 1).rates_from(0.0);
+    assert_eq!(found.len(), 70_000 / 2 - 1);
+    // The middle of an interval of two, of periods of 0.05 t.
+    for (place, found) in found.iter().enumerate() {
+        let expected = 0.0675 * 0.05 * (2.0 * place as f64 + 3.0);
+        assert!((found / expected - 1.0).abs() < 1e-4, "{place}: {found}");
+    }
+}
+
+#[test]
+fn dispersion_counts_from_an_origin_of_the_late_part() {
+    // More periods, of a time unit each, than origins are kept.
+    let dispersion = ballistic_dispersion(100, 20);
     let ballistic = |origin: f64, from: f64| -> Vec<f64> {
         (from as u32..100)
             .map(|period| 0.5 * 0.0675 * (2.0 * (f64::from(period) - origin) + 1.0))

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use peristalsis_configuration::{Configuration, Control, Grains};
 use peristalsis_engine::{Instructions, processors, threads_that_pay};
-use peristalsis_observe::{Sample, WaveFlow};
+use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use crate::RunError;
@@ -165,8 +165,8 @@ fn memory(configuration: &Configuration) -> f64 {
     };
     BYTES_OF_PROGRAM
         + of_sphere * moving_spheres(configuration) as f64
-        + (size_of::<Sample>() as f64) * samples
-        + (size_of::<WaveFlow>() as f64) * waves
+        + (size_of::<Sample>() as f64) * samples.min(MOST_ROWS as f64)
+        + (size_of::<WaveFlow>() as f64) * waves.min(MOST_ROWS as f64)
 }
 
 /// Threads that pay for a configuration on this machine.

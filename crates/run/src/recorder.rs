@@ -4,8 +4,8 @@ use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
 use peristalsis_observe::{
-    AxialDispersion, Observer, Sample, View, WallFault, WaveByWave, WaveFlow, WaveFrameProfile,
-    note_wall_faults,
+    AxialDispersion, Observer, Sample, Series, View, WallFault, WaveByWave, WaveFlow,
+    WaveFrameProfile, note_wall_faults,
 };
 
 /// Thresholds of J/Jmax at which every run notes its transition besides the configured one: which of them lies midway
@@ -16,10 +16,14 @@ pub const THRESHOLDS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Recorder {
     observer: Observer,
-    samples: Vec<Sample>,
+    samples: Series<Sample>,
     samples_per_period: u64,
+    /// Sum of J/Jmax over the samples of the period that is under way.
+    ratios: f64,
     /// J/Jmax of each whole period.
-    averages: Vec<f64>,
+    averages: Series<f64>,
+    /// Most grains outside at any sample.
+    escaped_most: f64,
     detector: Option<TransitionDetector>,
     /// A search at each of [`THRESHOLDS`]; none where there is no ratio of flow rates to watch.
     ladder: Vec<TransitionDetector>,
@@ -32,14 +36,14 @@ pub struct Recorder {
 }
 
 /// The measurements that grow with a run: samples, averages of periods, flows of waves.
-pub(crate) struct Series(Vec<Sample>, Vec<f64>, Vec<WaveFlow>);
+pub(crate) struct Measured(Series<Sample>, Series<f64>, Series<WaveFlow>);
 
-/// How long they are.
-pub(crate) type Lengths = [usize; 3];
+/// How many they are.
+pub(crate) type Lengths = [u64; 3];
 
-impl Series {
+impl Measured {
     pub(crate) fn lengths(&self) -> Lengths {
-        [self.0.len(), self.1.len(), self.2.len()]
+        [self.0.count(), self.1.count(), self.2.count()]
     }
 
     pub(crate) fn truncate(&mut self, [samples, averages, flows]: Lengths) {
@@ -67,9 +71,11 @@ impl Recorder {
         Self {
             dispersion: AxialDispersion::new(&observer),
             observer,
-            samples: Vec::new(),
+            samples: Series::new(1),
             samples_per_period,
-            averages: Vec::new(),
+            ratios: -0.0,
+            averages: Series::new(1),
+            escaped_most: 0.0,
             detector: detector_at(configuration.observe.transition_threshold),
             ladder: THRESHOLDS.into_iter().filter_map(detector_at).collect(),
             profile: WaveFrameProfile::new(bins, samples_per_period),
@@ -82,7 +88,7 @@ impl Recorder {
     /// Whether this can be what was measured of a simulation up to its step: what a state holds besides spheres.
     pub(crate) fn fits(&self, configuration: &Configuration, simulation: &Simulation) -> bool {
         let grains = simulation.bodies().grains;
-        let samples = self.samples.len() as u64;
+        let samples = self.samples.count();
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let each = configuration.run.steps_per_sample;
         let waves = simulation.wall().waves() as usize;
@@ -91,7 +97,9 @@ impl Recorder {
             && self.wall_interval == wall_interval(each, samples_per_period)
             // A run that diverged may have come to the end of an interval, and taken no sample there.
             && (samples..=samples + 1).contains(&(simulation.step() / each))
-            && self.averages.len() as u64 == samples / samples_per_period
+            && self.averages.count() == samples / samples_per_period
+            && self.samples.fits(1)
+            && self.averages.fits(1)
             && self.ladder.len() <= THRESHOLDS.len()
             && self.observer.fits(grains)
             && self.dispersion.fits(grains)
@@ -103,19 +111,21 @@ impl Recorder {
     pub(crate) fn record(&mut self, simulation: &Simulation) {
         let view = View::of(simulation);
         let before = self.observer.end_interval(&view);
-        self.samples
-            .push(Sample::of(&before, &self.observer, &view));
+        let sample = Sample::of(&before, &self.observer, &view);
+        self.ratios += sample.flow_rate_ratio;
+        self.escaped_most = self.escaped_most.max(sample.escaped);
+        self.samples.push([sample]);
         self.waves.add(&before, &self.observer, &view);
         self.profile.add(&view);
-        if (self.samples.len() as u64).is_multiple_of(self.wall_interval) {
+        if self.samples.count().is_multiple_of(self.wall_interval) {
             self.profile.add_wall_forces(simulation);
         }
         note_wall_faults(simulation, &mut self.wall_faults);
-        if (self.samples.len() as u64).is_multiple_of(self.samples_per_period) {
-            let first = self.samples.len() - self.samples_per_period as usize;
-            let ratios = self.samples[first..].iter().map(|it| it.flow_rate_ratio);
-            let average = ratios.sum::<f64>() / self.samples_per_period as f64;
-            self.averages.push(average);
+        if self.samples.count().is_multiple_of(self.samples_per_period) {
+            let average = self.ratios / self.samples_per_period as f64;
+            // What is added to it keeps its sign, even 0.
+            self.ratios = -0.0;
+            self.averages.push([average]);
             self.dispersion.end_period(&self.observer, &view);
             // Without grains inside there is no ratio, and the search ends.
             if !average.is_finite() || self.push(average).is_none() {
@@ -133,26 +143,58 @@ impl Recorder {
     }
 
     /// Takes the series out, until they are given back.
-    pub(crate) fn take_series(&mut self) -> Series {
-        let (samples, averages) = (&mut self.samples, &mut self.averages);
-        let (samples, averages) = (std::mem::take(samples), std::mem::take(averages));
-        Series(samples, averages, self.waves.replace_flows(Vec::new()))
+    pub(crate) fn take_series(&mut self) -> Measured {
+        let flows = self.waves.series().take();
+        Measured(self.samples.take(), self.averages.take(), flows)
     }
 
     /// Gives the series back.
-    pub(crate) fn give_series(&mut self, Series(samples, averages, flows): Series) {
+    pub(crate) fn give_series(&mut self, Measured(samples, averages, flows): Measured) {
         (self.samples, self.averages) = (samples, averages);
-        self.waves.replace_flows(flows);
+        *self.waves.series() = flows;
     }
 
-    /// The samples so far.
+    /// The samples so far; of a very long run each is that of [some intervals](Self::intervals).
     pub fn samples(&self) -> &[Sample] {
-        &self.samples
+        self.samples.rows()
     }
 
-    /// J/Jmax averaged over each whole period so far.
+    /// Samples taken so far.
+    pub fn taken(&self) -> u64 {
+        self.samples.count()
+    }
+
+    /// Intervals of a sample that is kept: 1, or a power of 2 in a run of more than [`MOST_ROWS`](peristalsis_observe::MOST_ROWS)
+    /// samples.
+    pub fn intervals(&self) -> u64 {
+        self.samples.each()
+    }
+
+    /// J/Jmax averaged over each whole period so far; of a very long run over some of them.
     pub fn averages(&self) -> &[f64] {
-        &self.averages
+        self.averages.rows()
+    }
+
+    /// Samples that are kept for each of [`averages`](Self::averages).
+    pub(crate) fn samples_of_average(&self) -> f64 {
+        let each = self.averages.each() * self.samples_per_period;
+        each as f64 / self.samples.each() as f64
+    }
+
+    /// Whole periods so far.
+    pub fn periods(&self) -> u64 {
+        self.averages.count()
+    }
+
+    /// Averages of the last so many periods.
+    pub(crate) fn late_averages(&self, periods: u64) -> &[f64] {
+        let (averages, taken) = (self.averages.rows(), periods / self.averages.each());
+        &averages[averages.len().saturating_sub(taken as usize)..]
+    }
+
+    /// Most grains outside the tube at any sample.
+    pub(crate) fn escaped_most(&self) -> f64 {
+        self.escaped_most
     }
 
     /// The profile in the wave's frame.
@@ -192,9 +234,10 @@ impl Recorder {
 
     /// The samples of the last part of what was measured, at least one.
     pub fn late(&self, fraction: f64) -> &[Sample] {
-        let number = self.samples.len();
+        let samples = self.samples.rows();
+        let number = samples.len();
         let taken = ((number as f64 * fraction).round() as usize).clamp(1.min(number), number);
-        &self.samples[number - taken..]
+        &samples[number - taken..]
     }
 }
 

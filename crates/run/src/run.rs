@@ -22,7 +22,7 @@ use crate::{PHYSICS_VERSION, RunError};
 pub use self::mark::Mark;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 9;
+const STATE_LAYOUT: u32 = 10;
 /// Steps between two looks at how grains turn, of which a contact takes tens.
 const STEPS_PER_TURN: u64 = 10;
 
@@ -304,12 +304,12 @@ impl Run {
 
     /// Whether all samples have been taken, or the run may end before.
     pub fn is_complete(&self) -> bool {
-        self.recorder.samples().len() as u64 >= self.configuration.run.samples || self.is_settled()
+        self.recorder.taken() >= self.configuration.run.samples || self.is_settled()
     }
 
     /// Whether the course of the drive is its user's: led by [`Run::drive_to`], or taken beyond the configured end.
     pub(crate) fn is_steered(&self) -> bool {
-        self.steered || self.recorder.samples().len() as u64 > self.configuration.run.samples
+        self.steered || self.recorder.taken() > self.configuration.run.samples
     }
 
     /// Whether the run may end since its transition has been found and has settled.
@@ -333,7 +333,7 @@ impl Run {
         let last_sample = samples.last().map_or(f64::NAN, |it| it.flow_rate_ratio);
         let last_average = self.recorder.averages().last().copied();
         Progress {
-            samples: samples.len() as u64,
+            samples: self.recorder.taken(),
             samples_total: self.configuration.run.samples,
             time: self.simulation.time(),
             period: self.simulation.wall().cycles(),

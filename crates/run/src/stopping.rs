@@ -20,7 +20,7 @@ impl Stopping {
     pub fn is_settled(self, recorder: &Recorder) -> bool {
         match recorder.transition() {
             Some(Transition::At { period, .. }) => {
-                recorder.averages().len() as u64 >= period + u64::from(self.settled_periods)
+                recorder.periods() >= period + u64::from(self.settled_periods)
             }
             _ => false,
         }
@@ -30,6 +30,6 @@ impl Stopping {
     /// given to settle.
     pub(crate) fn late_fraction(self, recorder: &Recorder) -> f64 {
         let late = f64::from(self.settled_periods.div_ceil(2).max(1));
-        (late / recorder.averages().len().max(1) as f64).min(1.0)
+        (late / recorder.periods().max(1) as f64).min(1.0)
     }
 }

@@ -197,3 +197,42 @@ fn a_snapshot_is_the_checkpoint_of_a_folder_and_goes_on_under_other_lengths_of_t
         .unwrap_err();
     assert!(refused.to_string().contains("other physics"), "{refused}");
 }
+
+/// The series of a run longer than is kept is that of one that is looked at half as often, before and after a stop.
+#[test]
+fn a_very_long_run_keeps_a_series_of_bounded_length() {
+    let tube = "tube.waves=1 tube.radius=2 tube.wavelength=10 tube.spheres_per_ring=8 tube.rings_per_wave=8";
+    let settings = format!(
+        "{tube} grains.number=2 drive.strain_rate=0.1 drive.width=3.6 run.periods=1400 observe.profile_bins=10"
+    );
+    let run = |samples: u32| {
+        let settings = format!("{settings} observe.samples_per_period={samples}");
+        Run::new(common::configuration("frictionless", &settings)).unwrap()
+    };
+    let mut long = run(200);
+    let rare = finish(run(100));
+    while long.progress().period < 1390.0 {
+        long.advance().unwrap();
+    }
+    let state = long.to_snapshot().unwrap();
+    let parts = finish(Run::from_snapshot(&state).unwrap());
+    let long = finish(long);
+    // As words, since some numbers are NaN.
+    let words = |run: &Run| format!("{:?}", run.recorder());
+    assert!(words(&long) == words(&parts));
+
+    let (recorder, rarer) = (long.recorder(), rare.recorder());
+    assert_eq!((recorder.taken(), recorder.intervals()), (280_000, 2));
+    assert_eq!((rarer.taken(), rarer.intervals()), (140_000, 1));
+    assert_eq!(recorder.samples().len(), rarer.samples().len());
+    for (one, other) in recorder.samples().iter().zip(rarer.samples()) {
+        assert_eq!(one.period, other.period);
+        assert_eq!(one.kinetic_energy, other.kinetic_energy);
+        assert!((one.flow_rate - other.flow_rate).abs() < 1e-12);
+        assert!((one.wall_power - other.wall_power).abs() < 1e-12);
+    }
+    let summaries = [&long, &rare].map(|run| Summary::of(run, Status::Complete, None));
+    assert_eq!(summaries[0].escaped_most, summaries[1].escaped_most);
+    let ratios = summaries.map(|summary| summary.flow_rate_ratio.0);
+    assert!((ratios[0] - ratios[1]).abs() < 1e-9, "{ratios:?}");
+}

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::{Configuration, ScheduledParameter};
-use peristalsis_observe::Sample;
+use peristalsis_observe::MOST_ROWS;
 use peristalsis_run::{Run, RunError, RunFolder, Warning};
 
 use crate::course::{Course, Turn};
@@ -26,8 +26,6 @@ const RAMP: f64 = 0.25;
 const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed more sees a gap.
 const ROWS: usize = 256;
-/// Samples that a run takes at most while it is watched: some 200 MB.
-const SAMPLES: usize = 200_000_000 / size_of::<Sample>();
 /// Saved states that are looked through for a free name.
 const SAVES: u32 = 9999;
 
@@ -278,7 +276,7 @@ impl Tube {
                 0.9 * self.step_seconds + 0.1 * seconds
             };
             self.course.mark_now_and_then(&mut self.run);
-            if self.run.recorder().samples().len() >= SAMPLES {
+            if self.run.recorder().samples().len() >= MOST_ROWS {
                 (self.ended, self.playing) = (true, false);
                 let periods = self.clock_now();
                 self.tell(&format!(

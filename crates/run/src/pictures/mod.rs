@@ -123,17 +123,16 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     // A sample is the mean over the interval that ends with it, an average that over so many intervals.
     let end = |samples_before: usize| match samples_before {
         0 => 0.0,
-        number => samples[number - 1].period,
+        number => samples[number.min(samples.len()) - 1].period,
     };
-    let middles = |count: usize, intervals: usize| -> Vec<f64> {
-        (0..count)
-            .map(|k| 0.5 * (end(k * intervals) + end((k + 1) * intervals)))
-            .collect()
+    let middles = |count: usize, intervals: f64| -> Vec<f64> {
+        let end = |k: usize| end((k as f64 * intervals).ceil() as usize);
+        (0..count).map(|k| 0.5 * (end(k) + end(k + 1))).collect()
     };
-    let time = middles(samples.len(), 1);
+    let time = middles(samples.len(), 1.0);
     let ratio: Vec<f64> = samples.iter().map(|it| it.flow_rate_ratio).collect();
     let averages = recorder.averages();
-    let intervals = configuration.observe.samples_per_period as usize;
+    let intervals = recorder.samples_of_average();
     let periods = middles(averages.len(), intervals);
     let mut last = end(samples.len());
     if last >= MANY_PERIODS {

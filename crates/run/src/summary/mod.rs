@@ -83,6 +83,8 @@ pub struct Summary {
     pub trajectory: Option<TrajectoryReport>,
     configuration: Configuration,
     late: Vec<Sample>,
+    /// Intervals between samples in it.
+    late_intervals: u64,
     /// J/Jmax of each whole late period.
     late_averages: Vec<f64>,
     whole: PartOfWave,
@@ -103,8 +105,8 @@ impl Summary {
         let simulation = run.simulation();
         let (samples, fraction) = (recorder.samples(), run.late_fraction());
         let late = recorder.late(fraction);
-        let late_periods = late.len() / configuration.observe.samples_per_period as usize;
-        let averages = recorder.averages();
+        let late_intervals = late.len() as u64 * recorder.intervals();
+        let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let flow_rate_ratio = match mean_with_error(&ratios_of(late)) {
             Ok(estimate) => (estimate.mean, estimate.error),
             Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
@@ -122,7 +124,7 @@ impl Summary {
             transition_times: recorder.transition_times(),
             newtonian: newtonian_reference(configuration),
             escaped: samples.last().map_or(0, escaped),
-            escaped_most: samples.iter().map(escaped).max().unwrap_or(0),
+            escaped_most: recorder.escaped_most() as u64,
             largest_overlap: simulation.ledger().largest_overlap,
             energy_residual: simulation.energy_residual(),
             pumping: Pumping::of(configuration, late),
@@ -136,7 +138,10 @@ impl Summary {
             warnings: run.warnings(),
             trajectory: None,
             configuration: configuration.clone(),
-            late_averages: averages[averages.len().saturating_sub(late_periods)..].to_vec(),
+            late_averages: recorder
+                .late_averages(late_intervals / samples_per_period)
+                .to_vec(),
+            late_intervals,
             whole: part(WavePart::Whole),
             narrow: part(WavePart::Narrow),
             front: part(WavePart::Front),
@@ -181,7 +186,7 @@ impl Summary {
 
     /// Periods that late means are over.
     fn late_periods(&self) -> f64 {
-        self.late.len() as f64 / f64::from(self.configuration.observe.samples_per_period)
+        self.late_intervals as f64 / f64::from(self.configuration.observe.samples_per_period)
     }
 
     /// Variance of the late averages of J/Jmax over a period each; NaN below two whole late periods.

@@ -69,8 +69,7 @@ fn overlapped(configuration: &Configuration, overlap: f64, limit: f64) -> Warnin
 /// That grains have left the tube.
 fn left(run: &Run, is_too_dense: bool) -> Option<Warning> {
     let configuration = run.configuration();
-    let samples = run.recorder().samples().iter();
-    let most = samples.map(|sample| sample.escaped).fold(0.0, f64::max);
+    let most = run.recorder().escaped_most();
     let (key, advice) = match configuration.drive.control {
         _ if is_too_dense => ("grains.volume_fraction", "fewer grains"),
         Control::Strain { .. } => (
