@@ -37,6 +37,11 @@ else
     step "skipped: the README's commands (there is no python3)"
 fi
 
+if command -v python3 >/dev/null; then
+    step "notices of what is shipped from others"
+    python3 scripts/third_party.py --check
+fi
+
 if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
     step "spelling"
     "$scratch/venv/bin/pip" install --quiet --no-cache-dir 'typos>=1.52,<2'

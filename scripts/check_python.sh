@@ -14,7 +14,9 @@ wheels=target/wheels
 rm -f "$wheels"/peristalsis-*.whl
 "$environment/bin/maturin" build --release --locked --out "$wheels"
 wheel=$(ls "$wheels"/peristalsis-*.whl)
-python3 -m zipfile --list "$wheel" | grep LICENSE-MIT > /dev/null || { echo "the wheel lacks its licence"; exit 1; }
+for notice in LICENSE-MIT LICENSE-APACHE THIRD-PARTY.txt; do
+    python3 -m zipfile --list "$wheel" | grep "$notice" > /dev/null || { echo "the wheel lacks $notice"; exit 1; }
+done
 "$environment/bin/pip" install --quiet --force-reinstall --no-deps "$wheel"
 
 step "tests"

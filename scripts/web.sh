@@ -19,7 +19,7 @@ npm run check
 npm run web
 cd ..
 assets=crates/viewer/assets
-cp "$assets/viewer.css" "$assets/icon.svg" README.md VALIDATION.md CITATION.cff LICENSE-MIT docs/images/space-time.png target/web/
+cp "$assets/viewer.css" "$assets/icon.svg" README.md VALIDATION.md CITATION.cff LICENSE-MIT THIRD-PARTY.txt docs/images/space-time.png target/web/
 cp crates/python/README.md target/web/python.md
 cp docs/images/viewer.jpg target/web/share.jpg
 # Where nothing can be drawn in space there is a film.

@@ -8,11 +8,13 @@ const [source] = process.argv.slice(2);
 const policy =
   "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; connect-src 'self'; " +
   "img-src 'self' data: blob:; base-uri 'none'; form-action 'none'";
+const book = existsSync(new URL("../target/web/book/index.html", import.meta.url));
 const links = [
-  existsSync(new URL("../target/web/book/index.html", import.meta.url)) && ["book/index.html", "The book"],
-  ["README.md", "What it is"], ["python.md", "From Python"], ["VALIDATION.md", "What came out"],
+  book && ["book/index.html", "The book"],
+  ...(book ? [["book/start/first-transition.html", "Begin"], ["book/guides/python.html", "From Python"], ["book/results/claims.html", "What came out"]]
+    : [["README.md", "What it is"], ["python.md", "From Python"], ["VALIDATION.md", "What came out"]]),
   ["https://doi.org/10.1103/PhysRevE.85.031302", "The paper"], ["CITATION.cff", "Cite it"],
-  source && [source, "Source"], ["LICENSE-MIT", "MIT or Apache-2.0"],
+  source && [source, "Source"], ["LICENSE-MIT", "MIT or Apache-2.0"], ["THIRD-PARTY.txt", "Works of others"],
 ].filter(Boolean);
 const nav = links.map(([address, name]) => `<a href="${address}">${name}</a>`).join("\n    ");
 

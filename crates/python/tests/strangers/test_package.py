@@ -64,7 +64,7 @@ def test_the_package_says_whose_it_is_and_brings_the_command() -> None:
     assert callable(script.load())
     about = metadata("peristalsis")
     assert about["Author"] and about["Project-URL"] and about["License-Expression"] == "MIT OR Apache-2.0"
-    assert {"LICENSE-MIT", "LICENSE-APACHE"} <= set(about.get_all("License-File") or ())
+    assert {"LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.txt"} <= set(about.get_all("License-File") or ())
 
 
 def test_the_book_has_its_pages() -> None:
