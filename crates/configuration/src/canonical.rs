@@ -7,7 +7,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 use toml::Value;
 
-use crate::configuration::{Configuration, Control};
+use crate::configuration::{Body, Configuration, Control};
 use crate::keys::ALTERNATIVES;
 use crate::schedule::{Schedule, ScheduleForm};
 
@@ -59,7 +59,7 @@ impl Configuration {
         text + &lines(self.derived())
     }
 
-    /// SHA-256 of everything that determines the trajectory: grains, contact, tube, drive, wall, initial state, time
+    /// SHA-256 of everything that determines the trajectory: grains, gravity, contact, tube, drive, wall, initial state, time
     /// step, integrator, kernel, skin of the neighbour search (the last two by rounding only) and seed.
     ///
     /// The same for configurations that differ in the length of the run, in what is measured, in the order of keys, or in
@@ -93,7 +93,7 @@ impl Configuration {
 
     /// Every key with its resolved value, in the order of the types that hold them.
     ///
-    /// What is not there is not listed: neither friction, units or a body force that the run does without, nor a staggered
+    /// What is not there is not listed: neither friction, units, gravity or a body force that the run does without, nor a staggered
     /// arrangement, nor an initial velocity that the initial state has of itself, and of alternatives only the first.
     fn entries(&self) -> Vec<Entry> {
         let mut tables =
@@ -122,6 +122,7 @@ impl Configuration {
         }
         let natural = self.natural_axial_velocity();
         entries.retain(|entry| match entry.path().as_str() {
+            "body.gravity" => self.body != Body::default(),
             "drive.body_force" => self.drive.body_force != 0.0,
             "tube.arrangement" => self.tube.arrangement != Arrangement::default(),
             "tube.arrangement_seed" => self.tube.arrangement.is_drawn(),
@@ -155,7 +156,7 @@ impl Configuration {
             derived.push(("period", period.into()));
             derived.push(("periods", periods.into()));
         }
-        if self.drive.body_force != 0.0 {
+        if self.axial_body_force() != 0.0 {
             derived.push(("pressure_rise", self.pressure_rise().into()));
         }
         if let Some(units) = &self.units {

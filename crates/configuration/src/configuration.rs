@@ -22,6 +22,8 @@ use crate::units::Units;
 pub struct Configuration {
     /// The grains.
     pub grains: Grains,
+    /// What acts on every grain.
+    pub body: Body,
     /// The contact of two spheres, grain or wall.
     pub contact: ContactModel,
     /// The tube.
@@ -73,6 +75,17 @@ impl Grains {
         let (least, most) = (self.diameter_min, self.diameter_max);
         (least + most) * (least * least + most * most) / 4.0
     }
+}
+
+/// What acts on every grain, wherever it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Body {
+    /// Gravity [x, y, z]: the acceleration of every grain by its weight. z is the tube's axis, whichever way the wave
+    /// runs, x and y lie across it: [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an upright one. The wall has no
+    /// weight of its own. drive.body_force adds to it; units.acceleration gives it in SI.
+    #[schemars(extend("x-unit" = "d t^-2", "items" = {"type": "number", "minimum": -1e6, "maximum": 1e6}))]
+    pub gravity: [f64; 3],
 }
 
 /// The tube: wall spheres in rings or at random places, periodic along its axis.
@@ -176,8 +189,8 @@ pub struct Drive {
     #[serde(default)]
     pub direction: WaveDirection,
     /// Body force on the grains g, force over mass along the wave: negative is back pressure, against which the wave has to
-    /// pump. With grains of several sizes it acts as gravity along the tube. The pressure rise over a wavelength that it
-    /// stands for is N m (-g) lambda/(L pi a^2).
+    /// pump. It is gravity along the wave, to which body.gravity adds. The pressure rise over a wavelength that both
+    /// stand for is N m (-g) lambda/(L pi a^2), g their part along the wave.
     #[serde(default)]
     #[schemars(extend("x-unit" = "d t^-2", "minimum" = -1e6, "maximum" = 1e6))]
     pub body_force: f64,
@@ -263,8 +276,8 @@ impl Default for Wall {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Initial {
-    /// How the grains stand at t = 0: spread over the tube at rest, gathered in the bellies and moving with the wave, or
-    /// placed by a program, which no file repeats.
+    /// How the grains stand at t = 0: spread over the tube at rest, settled under gravity, gathered in the bellies and
+    /// moving with the wave, or placed by a program, which no file repeats.
     pub state: InitialState,
     /// Velocity of every grain along the wave at t = 0. Missing: 0 from rest, the wave's speed when jammed.
     #[schemars(extend("x-unit" = "d t^-1", "minimum" = -1e9, "maximum" = 1e9, "default" = null))]
@@ -406,18 +419,40 @@ impl Configuration {
         hardest
     }
 
+    /// +1 for a wave towards +z, -1 towards -z: the source's strain-controlled wave runs towards -z.
+    pub fn heading(&self) -> f64 {
+        let along = match self.drive.direction {
+            WaveDirection::Forward => 1.0,
+            WaveDirection::Backward => -1.0,
+        };
+        match self.drive.control {
+            Control::Strain { .. } => -along,
+            Control::Stress { .. } => along,
+        }
+    }
+
+    /// Whether gravity or the drive's body force acts on the grains.
+    pub fn has_body_force(&self) -> bool {
+        self.drive.body_force != 0.0 || self.body != Body::default()
+    }
+
+    /// Force over mass on the grains along the wave: the drive's body force and that part of gravity \[d t^-2\].
+    pub fn axial_body_force(&self) -> f64 {
+        self.drive.body_force + self.heading() * self.body.gravity[2]
+    }
+
     /// Mean mass of a grain, from the mean of its cubed diameter \[m\].
     pub fn mean_grain_mass(&self) -> f64 {
         self.grains.mean_cubed_diameter()
     }
 
     /// Pressure rise over one wavelength that the wave has to pump against \[m d^-1 t^-2\]: the weight of the grains of a
-    /// wavelength under the body force g over the section of the straight tube, Dp = -N m g lambda/(L pi a^2).
+    /// wavelength under [`Configuration::axial_body_force`] g over the section of the straight tube, Dp = -N m g lambda/(L pi a^2).
     pub fn pressure_rise(&self) -> f64 {
         let Tube {
             radius, wavelength, ..
         } = self.tube;
-        let weight = self.grains.number as f64 * self.mean_grain_mass() * self.drive.body_force;
+        let weight = self.grains.number as f64 * self.mean_grain_mass() * self.axial_body_force();
         // One zero, not two.
         0.0 - weight * wavelength / (self.tube.length() * PI * radius * radius)
     }
@@ -433,7 +468,7 @@ impl Configuration {
     /// Velocity along the wave that the initial state has of itself \[d t^-1\].
     pub(crate) fn natural_axial_velocity(&self) -> f64 {
         match self.initial.state {
-            InitialState::Rest | InitialState::Placed => 0.0,
+            InitialState::Rest | InitialState::Settled | InitialState::Placed => 0.0,
             InitialState::Jammed => self.wave_speed(),
         }
     }

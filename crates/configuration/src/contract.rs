@@ -116,16 +116,25 @@ impl Contract<'_> {
 
     fn array(&mut self, item: &Item, items: &[Item], schema: &Value, path: &str) {
         if (items.len() as u64) < schema["minItems"].as_u64().unwrap_or(0) {
-            let place = (&item.origin, "this list");
-            let message = format!("the list {path} is too short");
-            let kind = ProblemKind::OutOfRange;
-            self.refuse(kind, path, place, message, allowed(schema));
+            self.wrong_length(item, "short", schema, path);
+        } else if schema["maxItems"]
+            .as_u64()
+            .is_some_and(|most| items.len() as u64 > most)
+        {
+            self.wrong_length(item, "long", schema, path);
         }
         if let Some(inner) = schema.get("items") {
             for (index, element) in items.iter().enumerate() {
                 self.item(element, inner, &format!("{path}[{index}]"));
             }
         }
+    }
+
+    fn wrong_length(&mut self, item: &Item, length: &str, schema: &Value, path: &str) {
+        let place = (&item.origin, "this list");
+        let message = format!("the list {path} is too {length}");
+        let kind = ProblemKind::OutOfRange;
+        self.refuse(kind, path, place, message, allowed(schema));
     }
 
     fn name(&mut self, item: &Item, text: &str, schema: &Value, path: &str) {
@@ -237,7 +246,15 @@ fn kind_in_words(schema: &Value) -> String {
         Some("integer") => format!("a whole number{}", range_in_words(schema)),
         Some("boolean") => "true or false".into(),
         Some("string") => "a text".into(),
-        Some("array") => format!("a list of {}", kind_in_words(&schema["items"])),
+        Some("array") => {
+            let items = kind_in_words(&schema["items"]);
+            match (schema["minItems"].as_u64(), schema["maxItems"].as_u64()) {
+                (Some(least), Some(most)) if least == most => {
+                    format!("a list of {most}, each {items}")
+                }
+                _ => format!("a list of {items}"),
+            }
+        }
         Some("object") => match schema["properties"].as_object() {
             Some(properties) => format!("a table of {}", names_of(properties)),
             None => "a table".into(),

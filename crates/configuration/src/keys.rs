@@ -8,7 +8,7 @@ use peristalsis_physics::contact::{CundallStrack, Normal};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::configuration::{Drive, Grains, Initial, Observe, Run, Tube, Wall};
+use crate::configuration::{Body, Drive, Grains, Initial, Observe, Run, Tube, Wall};
 
 /// Keys that give the number of grains.
 pub(crate) const NUMBERS: &[&str] = &[
@@ -37,9 +37,15 @@ pub(crate) const DAMPINGS: [&[&str]; 2] = [
 /// Where the wall spheres of arrangement = "file" come from; at most one is given.
 const SPHERES: &[&str] = &["tube.file", "tube.places"];
 
+/// Keys that give gravity, of which at most one is given.
+const GRAVITIES: &[&str] = &["body.gravity", "units.acceleration"];
+
 /// All groups of keys that exclude one another.
 pub(crate) fn exclusive_groups() -> impl Iterator<Item = &'static [&'static str]> {
-    ALTERNATIVES.into_iter().chain(DAMPINGS).chain([SPHERES])
+    ALTERNATIVES
+        .into_iter()
+        .chain(DAMPINGS)
+        .chain([SPHERES, GRAVITIES])
 }
 
 /// Configuration of one simulation of grains in a peristaltic tube.
@@ -47,6 +53,8 @@ pub(crate) fn exclusive_groups() -> impl Iterator<Item = &'static [&'static str]
 pub(crate) struct Keys {
     #[serde(default)]
     pub(crate) grains: GrainsKeys,
+    #[serde(default)]
+    pub(crate) body: Body,
     pub(crate) contact: ContactKeys,
     pub(crate) tube: TubeKeys,
     pub(crate) drive: DriveKeys,
@@ -232,4 +240,7 @@ pub(crate) struct UnitsKeys {
     /// follows stiffness or young_modulus.
     #[schemars(extend("x-unit" = "Hz", "minimum" = 0, "maximum" = 1e9))]
     pub(crate) wave_frequency: Option<f64>,
+    /// Gravity [x, y, z] in SI, instead of body.gravity: [0, -9.81, 0] is a horizontal tube on Earth.
+    #[schemars(extend("x-unit" = "m s^-2", "items" = {"type": "number", "minimum": -1e9, "maximum": 1e9}))]
+    pub(crate) acceleration: Option<[f64; 3]>,
 }

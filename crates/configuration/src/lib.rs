@@ -41,7 +41,9 @@ mod source;
 mod suggestion;
 mod units;
 
-pub use configuration::{Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall};
+pub use configuration::{
+    Body, Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall,
+};
 pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
 pub use layers::join;

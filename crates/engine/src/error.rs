@@ -39,6 +39,19 @@ pub enum EngineError {
         /// Grains outside the wall.
         outside: usize,
     },
+    /// Grains that should settle go on moving.
+    #[error(
+        "the grains do not settle: after {time:.3e} t their mean kinetic energy is {energy:.1e} m g d, and {limit:.0e} \
+         counts as rest; nothing may hold them against the body force, or their contacts are too soft for it"
+    )]
+    NotSettled {
+        /// How long they fell \[t\].
+        time: f64,
+        /// Mean kinetic energy of a grain, in units of m g d.
+        energy: f64,
+        /// That of grains at rest, in the same units.
+        limit: f64,
+    },
     /// A wall that cannot take the place of another.
     #[error("the drive cannot go on with this wall: {reason}")]
     OtherWall {

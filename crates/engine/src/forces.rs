@@ -88,12 +88,12 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
     tally
 }
 
-/// Adds the body force, force over mass along +z, to the accelerations of the grains.
-pub(crate) fn add_body_force(bodies: &mut Bodies, body_force: f64) {
+/// Adds the body force, force over mass, to the accelerations of the grains.
+pub(crate) fn add_body_force(bodies: &mut Bodies, body_force: DVec3) {
     // Nothing added leaves even the sign of a zero as it is.
-    if body_force != 0.0 {
+    if body_force != DVec3::ZERO {
         for acceleration in &mut bodies.acceleration[..bodies.grains] {
-            acceleration.z += body_force;
+            *acceleration += body_force;
         }
     }
 }

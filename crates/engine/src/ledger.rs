@@ -1,5 +1,6 @@
 //! The energy ledger: where energy comes from and where it goes.
 
+use glam::DVec3;
 use peristalsis_physics::contact::ContactForce;
 
 /// Sums of one evaluation of the forces, at one instant.
@@ -97,8 +98,8 @@ pub struct Ledger {
     pub keep_work: f64,
     /// Work of the body force on the grains, up to the end of the last advance.
     pub body_work: f64,
-    /// Sum m z of the grains at the start, from which that work is counted \[m d\].
-    pub initial_axial_moment: f64,
+    /// Sum m r of the grains at the start, from which that work is counted \[m d\].
+    pub initial_moment: DVec3,
     /// Integral of |power of wall and drive|: with the body's work the scale of the residual.
     pub gross_work: f64,
     /// Lost along the normals of contacts.

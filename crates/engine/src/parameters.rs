@@ -1,5 +1,6 @@
 //! How a simulation is computed.
 
+use glam::DVec3;
 use peristalsis_physics::contact::ContactModel;
 pub use peristalsis_physics::method::{Integrator, Kernel};
 
@@ -16,6 +17,6 @@ pub struct Parameters {
     pub skin: f64,
     /// Which kernel computes the forces.
     pub kernel: Kernel,
-    /// Body force on the grains: force over mass along +z, the same at all times \[d/t^2\].
-    pub body_force: f64,
+    /// Body force on the grains: force over mass, the same everywhere and at all times; gravity is one \[d/t^2\].
+    pub body_force: DVec3,
 }

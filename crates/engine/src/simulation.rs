@@ -1,5 +1,6 @@
 //! A simulation: spheres, wall, laws and clock, advanced step by step.
 
+use glam::DVec3;
 use peristalsis_physics::contact::TangentialHistory;
 use peristalsis_physics::with_normal_law;
 
@@ -40,22 +41,70 @@ impl Simulation {
     /// A simulation that starts at time 0 with the given spheres.
     pub fn new(bodies: Bodies, wall: Wall, parameters: Parameters) -> Self {
         let mut simulation = Self::assemble(bodies, wall, parameters);
-        // Forces at the start, so that the first step knows its accelerations.
+        simulation.refresh_contacts();
+        simulation.begin();
+        simulation
+    }
+
+    /// A simulation that starts at time 0 with the spheres of a snapshot, and with the springs of their contacts.
+    ///
+    /// # Errors
+    /// [`EngineError::SnapshotMismatch`] where the snapshot cannot belong to such a simulation.
+    pub(crate) fn starting_with(
+        snapshot: Snapshot,
+        wall: Wall,
+        parameters: Parameters,
+    ) -> Result<Self, EngineError> {
+        snapshot.check(&wall, &parameters)?;
+        let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
+        simulation.refresh_contacts();
+        simulation.remember(snapshot.pair_histories, &snapshot.wall_histories)?;
+        simulation.begin();
+        Ok(simulation)
+    }
+
+    /// Makes the neighbour list anew where it no longer holds.
+    fn refresh_contacts(&mut self) {
+        let (bodies, wall) = (&self.bodies, &self.course.wall);
+        self.memory.refresh(bodies, wall, self.parameters.skin);
+    }
+
+    /// Works out the forces at the start, so that the first step knows its accelerations, and opens the ledger.
+    fn begin(&mut self) {
         let Self {
             bodies,
             course,
             memory,
+            parameters,
             ..
-        } = &mut simulation;
+        } = self;
         with_contact_law!(parameters.contact.normal, memory, |law, contacts| {
-            contacts.refresh(bodies, &course.wall, parameters.skin);
             course.tally = evaluate(law, bodies, &course.wall, contacts, 0.0);
         });
         add_body_force(bodies, parameters.body_force);
-        simulation.course.ledger.initial_energy = simulation.energy();
-        simulation.course.ledger.initial_axial_moment = simulation.axial_moment();
-        simulation.choose_kernel(None);
-        simulation
+        self.course.ledger.initial_energy = self.energy();
+        self.course.ledger.initial_moment = self.moment();
+        self.choose_kernel(None);
+    }
+
+    /// Takes the springs of contacts from a snapshot; the neighbour list holds their pairs.
+    fn remember(
+        &mut self,
+        pairs: Vec<(u32, u32, TangentialHistory)>,
+        of_wall: &[(u32, u32, TangentialHistory)],
+    ) -> Result<(), EngineError> {
+        let Memory::Frictional(_, contacts) = &mut self.memory else {
+            return Ok(());
+        };
+        for (i, j, history) in pairs {
+            if !contacts.pairs.set_history(i, j, history) {
+                let reason =
+                    format!("it remembers a contact of spheres {i} and {j}, which are far apart");
+                return Err(EngineError::SnapshotMismatch { reason });
+            }
+        }
+        contacts.wall = WallMemory::from_entries(self.bodies.grains, of_wall);
+        Ok(())
     }
 
     fn assemble(mut bodies: Bodies, mut wall: Wall, parameters: Parameters) -> Self {
@@ -129,10 +178,10 @@ impl Simulation {
                 }
             }),
         };
-        if body_force != 0.0 {
-            // Its work, g sum m (z - z_0): exact whatever the path, so that no step need look at it.
-            let moved = self.axial_moment() - self.course.ledger.initial_axial_moment;
-            self.course.ledger.body_work = body_force * moved;
+        if body_force != DVec3::ZERO {
+            // Its work, g . sum m (r - r_0): exact whatever the path, so that no step need look at it.
+            let moved = self.moment() - self.course.ledger.initial_moment;
+            self.course.ledger.body_work = body_force.dot(moved);
         }
         outcome.map_err(|runaway| EngineError::Diverged {
             step: self.course.step,
@@ -358,39 +407,23 @@ impl Simulation {
         snapshot.check(&wall, &parameters)?;
         let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
         simulation.past = snapshot.past;
-        let Self {
-            bodies,
-            course,
-            memory,
-            ..
-        } = &mut simulation;
+        let course = &mut simulation.course;
         (course.tally, course.ledger) = (snapshot.tally, snapshot.ledger);
         course.step = snapshot.step;
         course.wall.move_to(course.time());
         // Contacts with mobile spheres of the wall, and all that have a history, are found in the list.
         if course.wall.mobile_spheres() > 0 || parameters.contact.friction.is_some() {
-            memory.refresh(bodies, &course.wall, parameters.skin);
+            simulation.refresh_contacts();
         }
-        if let Memory::Frictional(_, contacts) = memory {
-            for (i, j, history) in snapshot.pair_histories {
-                if !contacts.pairs.set_history(i, j, history) {
-                    let reason = format!(
-                        "it remembers a contact of spheres {i} and {j}, which are far apart"
-                    );
-                    return Err(EngineError::SnapshotMismatch { reason });
-                }
-            }
-            contacts.wall = WallMemory::from_entries(bodies.grains, &snapshot.wall_histories);
-        }
+        simulation.remember(snapshot.pair_histories, &snapshot.wall_histories)?;
         simulation.choose_kernel(snapshot.sorting.as_ref());
         Ok(simulation)
     }
 
-    /// First moment of the grains' mass along the tube, sum m z with turns round it counted \[m d\].
-    fn axial_moment(&self) -> f64 {
-        let length = self.wall().length();
-        (0..self.bodies.grains)
-            .map(|i| self.bodies.mass[i] * self.bodies.unfolded(i, length))
-            .sum()
+    /// First moment of the grains' mass, sum m r with turns round the tube counted \[m d\].
+    fn moment(&self) -> DVec3 {
+        let (bodies, length) = (&self.bodies, self.wall().length());
+        let place = |i: usize| bodies.position[i].with_z(bodies.unfolded(i, length));
+        (0..bodies.grains).map(|i| bodies.mass[i] * place(i)).sum()
     }
 }

@@ -28,7 +28,7 @@ fn moving(row: Row, seed: u64) -> State {
             state.bodies.angular_velocity[body] = numbers.vector(0.5);
         }
     }
-    state.parameters.body_force = 0.01 * (numbers.uniform() - 0.5);
+    state.parameters.body_force = numbers.vector(0.005);
     state
 }
 
@@ -127,9 +127,18 @@ impl Map {
         apart.fold(0.0, f64::max)
     }
 
-    /// The same in the wall and with the parameters of the original.
+    /// The same in the wall of the original.
     fn in_place(&self, original: &State) -> f64 {
-        self.difference(original, original.wall.clone(), original.parameters)
+        let parameters = self.parameters(&original.parameters);
+        self.difference(original, original.wall.clone(), parameters)
+    }
+
+    /// The same laws and steps, with the body force turned.
+    fn parameters(&self, original: &Parameters) -> Parameters {
+        Parameters {
+            body_force: self.velocity(original.body_force) / self.units.time,
+            ..*original
+        }
     }
 }
 
@@ -164,10 +173,7 @@ fn reversed(original: &State) -> f64 {
             ..sphere
         })
     };
-    let parameters = Parameters {
-        body_force: -original.parameters.body_force,
-        ..original.parameters
-    };
+    let parameters = map.parameters(&original.parameters);
     map.difference(original, turned_round(&original.wall), parameters)
 }
 
@@ -332,8 +338,7 @@ fn in_other_units(original: &State, units: Units) -> f64 {
         contact: units.contact(ours.contact),
         time_step: units.time * ours.time_step,
         skin: units.length * ours.skin,
-        body_force: units.length / (units.time * units.time) * ours.body_force,
-        ..*ours
+        ..map.parameters(ours)
     };
     map.difference(original, units.wall(&original.wall), parameters)
 }
@@ -372,7 +377,7 @@ proptest! {
     #[test]
     fn free_grains_keep_their_momenta_whoever_looks(row in row(), seed: u64, boost in -0.3..0.3_f64) {
         let mut state = moving(row, seed);
-        state.parameters.body_force = 0.0;
+        state.parameters.body_force = DVec3::ZERO;
         let grains = 20;
         let mut numbers = Numbers(seed);
         let places = (0..grains).map(|_| numbers.vector(1.3) + DVec3::new(0.0, 0.0, 10.0));
@@ -426,7 +431,7 @@ fn half_a_step_of_the_lattice_is_something_else() {
     assert!(half_turned.in_place(&state) > 1e-3);
     // And a body force that was forgotten.
     let heavier = Parameters {
-        body_force: state.parameters.body_force + 0.01,
+        body_force: state.parameters.body_force + 0.01 * DVec3::X,
         ..state.parameters
     };
     let apart = Map::identity(&state).difference(&state, state.wall.clone(), heavier);

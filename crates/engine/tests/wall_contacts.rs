@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 
-const BODY_FORCE: f64 = -0.003;
+const BODY_FORCE: DVec3 = DVec3::new(0.001, -0.0005, -0.003);
 
 fn walls() -> [Wall; 2] {
     let driven = elastic_with(|wall| wall.force_amplitude = Schedule::constant(0.02));
@@ -51,7 +51,7 @@ fn balance(mut simulation: Simulation) {
     let time_step = simulation.parameters().time_step;
     let frictional = simulation.parameters().contact.friction.is_some();
     let mass: f64 = of_grains(simulation.bodies()).mass.iter().sum();
-    let weight = DVec3::new(0.0, 0.0, mass * BODY_FORCE);
+    let weight = mass * BODY_FORCE;
     let start = momentum(&of_grains(simulation.bodies()));
     let (mut impulse, mut gross, mut by_friction) = (DVec3::ZERO, 0.0, 0.0);
     let (mut apart, mut axial) = (0.0, 0.0);

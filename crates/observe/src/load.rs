@@ -93,7 +93,7 @@ impl Load {
         let bodies = simulation.bodies();
         let body_force = simulation.parameters().body_force;
         let masses = &bodies.mass[..bodies.grains];
-        let weight = |mass: &f64| DVec3::new(0.0, 0.0, mass * body_force);
+        let weight = |mass: &f64| *mass * body_force;
         let mut forces: Vec<DVec3> = masses.iter().map(weight).collect();
         let mut torques = vec![DVec3::ZERO; bodies.grains];
         let mut virial = kinetic_part(bodies);

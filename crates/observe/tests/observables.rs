@@ -47,7 +47,7 @@ fn parameters() -> Parameters {
         time_step: 0.05,
         skin: 0.3,
         kernel: peristalsis_engine::Kernel::default(),
-        body_force: 0.0,
+        body_force: DVec3::ZERO,
     }
 }
 

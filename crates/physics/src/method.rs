@@ -10,6 +10,9 @@ pub enum InitialState {
     /// Spread over the tube, at rest: J = 0.
     #[default]
     Rest,
+    /// Spread over the tube and fallen until they rest under body.gravity and drive.body_force: J = 0. The wall stands
+    /// as it is at t = 0; rest is a mean kinetic energy below 1e-6 m g d. Strain control only.
+    Settled,
     /// Gathered in the bellies and moving with the wave: J = Jmax.
     Jammed,
     /// Where a caller of the library has put them: no file says where, and a checkpoint alone repeats such a run.

@@ -340,7 +340,7 @@ impl Run {
             (*simulation.ledger(), now)
         });
         let answer = pythonize(py, &ledger)?.cast_into::<PyDict>()?;
-        answer.del_item("initial_axial_moment")?;
+        answer.del_item("initial_moment")?;
         for (name, value) in now {
             answer.set_item(name, value)?;
         }

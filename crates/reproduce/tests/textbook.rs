@@ -11,12 +11,13 @@ use peristalsis_reproduce::textbook::{CASES, Case, Circumstances, Validation, ch
 use peristalsis_reproduce::{Check, Convergence, Finding, Prose, ReproduceError, Size};
 
 /// Cases of a few seconds in all; the others are for `peristalsis validate`.
-const FAST: [&str; 6] = [
+const FAST: [&str; 7] = [
     "normal-impact",
     "restitution",
     "viscoelastic",
     "spin",
     "slip-to-roll",
+    "gravity",
     "chain",
 ];
 

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 use peristalsis_configuration::{
-    Configuration, Control, InitialState, ScheduledParameter, WaveDirection, Waveform,
+    Configuration, Control, InitialState, ScheduledParameter, Waveform,
 };
-use peristalsis_engine::initial::{Packing, PackingReport, pack_unless};
+use peristalsis_engine::initial::{Packing, PackingReport, pack_unless, settle};
 use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall, Scattered};
 use peristalsis_engine::{Bodies, Parameters, Simulation, Touching, Wall};
 use peristalsis_observe::TubeShape;
@@ -55,8 +55,11 @@ pub(crate) fn assemble_unless(
         seed: configuration.run.seed,
     };
     let (bodies, report) = pack_unless(&packing, &wall, configuration.contact.normal, stop)?;
-    let simulation = Simulation::new(bodies, wall, parameters(configuration));
-    Ok((simulation, report))
+    let parameters = parameters(configuration);
+    if configuration.initial.state == InitialState::Settled {
+        return Ok(settle(bodies, wall, parameters, report, stop)?);
+    }
+    Ok((Simulation::new(bodies, wall, parameters), report))
 }
 
 /// Refuses so many grains that packing them is not tried.
@@ -208,19 +211,8 @@ pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
         time_step: configuration.run.time_step,
         skin: configuration.run.neighbour_skin,
         kernel: configuration.run.kernel,
-        body_force: heading(configuration) * configuration.drive.body_force,
-    }
-}
-
-/// +1 for a wave towards +z, -1 towards -z: the source's strain-controlled wave runs towards -z.
-fn heading(configuration: &Configuration) -> f64 {
-    let along = match configuration.drive.direction {
-        WaveDirection::Forward => 1.0,
-        WaveDirection::Backward => -1.0,
-    };
-    match configuration.drive.control {
-        Control::Strain { .. } => -along,
-        Control::Stress { .. } => along,
+        body_force: DVec3::from_array(configuration.body.gravity)
+            + configuration.heading() * configuration.drive.body_force * DVec3::Z,
     }
 }
 
@@ -237,7 +229,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
         sphere_diameter: wall.sphere_diameter,
         staggered: tube.arrangement != Arrangement::Aligned,
     };
-    let heading = heading(configuration);
+    let heading = configuration.heading();
     let schedule = |parameter, constant| schedule(configuration, parameter, constant);
     let frequency = schedule(ScheduledParameter::StrainRate, drive.strain_rate);
     match drive.control {

@@ -245,8 +245,12 @@ impl Recorder {
 /// to back flow from either, and upward to more than jammed flow.
 fn start_and_direction(state: InitialState, threshold: f64) -> (f64, Direction) {
     match state {
-        InitialState::Rest | InitialState::Placed if threshold < 0.0 => (0.0, Direction::Downward),
-        InitialState::Rest | InitialState::Placed => (0.0, Direction::Upward),
+        InitialState::Rest | InitialState::Settled | InitialState::Placed if threshold < 0.0 => {
+            (0.0, Direction::Downward)
+        }
+        InitialState::Rest | InitialState::Settled | InitialState::Placed => {
+            (0.0, Direction::Upward)
+        }
         InitialState::Jammed if threshold > 1.0 => (1.0, Direction::Upward),
         InitialState::Jammed => (1.0, Direction::Downward),
     }

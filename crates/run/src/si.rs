@@ -27,7 +27,9 @@ pub struct SiEstimate {
     pub time_step_s: f64,
     /// What goes through a section in a second if all grains go with the fastest wave, Jmax m \[kg/s\].
     pub largest_mass_flow_rate_kg_per_s: f64,
-    /// Body force along the wave \[m/s^2\].
+    /// Gravity [x, y, z] \[m/s^2\].
+    pub gravity_m_per_s2: [f64; 3],
+    /// Body force along the wave, gravity's part with it \[m/s^2\].
     pub body_force_m_per_s2: f64,
     /// Pressure rise over a wavelength that it stands for \[Pa\].
     pub pressure_rise_pa: f64,
@@ -38,6 +40,7 @@ pub struct SiEstimate {
 impl SiEstimate {
     pub(crate) fn of(configuration: &Configuration, units: &Units) -> Self {
         let time = units.time();
+        let acceleration = units.velocity() / time;
         let hardest = configuration.at_its_hardest();
         let grains = configuration.grains.number as f64;
         let most = grains * hardest.wave_speed() / configuration.tube.length();
@@ -55,7 +58,8 @@ impl SiEstimate {
             largest_mass_flow_rate_kg_per_s: most
                 * configuration.mean_grain_mass()
                 * units.mass_flow(),
-            body_force_m_per_s2: configuration.drive.body_force * units.velocity() / time,
+            gravity_m_per_s2: configuration.body.gravity.map(|it| it * acceleration),
+            body_force_m_per_s2: configuration.axial_body_force() * acceleration,
             pressure_rise_pa: configuration.pressure_rise() * units.pressure(),
             overlap_at_wave_speed: crate::warnings::overlap_at_wave_speed(&hardest),
         }

@@ -132,7 +132,7 @@ fn applies(scope: Scope, configuration: &Configuration) -> bool {
     match scope {
         Scope::Always => true,
         Scope::Friction => configuration.contact.friction.is_some(),
-        Scope::BodyForce => configuration.drive.body_force != 0.0,
+        Scope::BodyForce => configuration.has_body_force(),
         Scope::ElasticWall => matches!(configuration.drive.control, Control::Stress { .. }),
     }
 }

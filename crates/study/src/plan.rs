@@ -116,6 +116,7 @@ impl Point {
 pub(crate) fn state_name(state: InitialState) -> &'static str {
     match state {
         InitialState::Rest => "rest",
+        InitialState::Settled => "settled",
         InitialState::Jammed => "jammed",
         InitialState::Placed => "placed",
     }

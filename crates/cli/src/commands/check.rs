@@ -88,6 +88,10 @@ fn in_words(estimate: &Estimate) -> String {
             si.unit_pressure_pa,
             si.unit_power_w
         ));
+        if si.gravity_m_per_s2 != [0.0; 3] {
+            let [x, y, z] = si.gravity_m_per_s2.map(|it| significant(it, 4));
+            lines.push(format!("                  gravity [{x}, {y}, {z}] m/s^2"));
+        }
         if si.body_force_m_per_s2 != 0.0 {
             lines.push(format!(
                 "                  body force {:.3e} m/s^2, a pressure rise of {:.3e} Pa a wavelength",

@@ -1,5 +1,6 @@
 //! From layers of keys to one resolved configuration.
 
+mod body;
 mod damping;
 mod drive;
 mod grains;
@@ -10,6 +11,7 @@ mod tube;
 mod units;
 
 use peristalsis_physics::contact::ContactModel;
+use peristalsis_physics::method::InitialState;
 
 use crate::configuration::{Configuration, Control, FIRST_SEED, Wall};
 use crate::contract;
@@ -346,6 +348,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     }
     let units = contact.and_then(|contact| units::units(&keys.units, &contact, context));
     let drive = drive::drive(&keys, units.flatten().as_ref(), context);
+    let body = units.and_then(|units| body::body(&keys, units.as_ref(), context));
     let run = match (&drive, &grains) {
         (Some(drive), Some(grains)) => run::run(keys.run, drive, grains, &keys.observe, context),
         _ => None,
@@ -358,6 +361,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     };
     let mut configuration = Configuration {
         grains: grains?,
+        body: body?,
         contact: contact?,
         tube,
         drive: drive?,
@@ -373,7 +377,32 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     } else {
         configuration.natural_axial_velocity()
     };
+    check_settling(&configuration, context);
     Some(configuration)
+}
+
+/// Refuses grains that are to settle where they cannot.
+fn check_settling(configuration: &Configuration, context: &mut Context<'_>) {
+    if configuration.initial.state != InitialState::Settled {
+        return;
+    }
+    if let Control::Stress { .. } = configuration.drive.control {
+        context.refuse::<()>(
+            ProblemKind::Inconsistent,
+            &["initial.state", "drive.control"],
+            "grains settle in a wall that stands still, and an elastic one does not".into(),
+            "initial.state = \"rest\", or drive.control = \"strain\"".into(),
+        );
+    } else if !configuration.has_body_force() {
+        context.refuse::<()>(
+            ProblemKind::Inconsistent,
+            &["initial.state", "body.gravity"],
+            "initial.state = \"settled\" needs gravity for the grains to settle under".into(),
+            "give body.gravity, such as [0, -0.001, 0] for a horizontal tube, or units.acceleration in SI; \
+             or take initial.state = \"rest\""
+                .into(),
+        );
+    }
 }
 
 fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel> {

@@ -48,7 +48,9 @@ pub(super) fn units(
     } else {
         String::new()
     };
-    let mut keys = needed.into_iter().chain(["units.wave_frequency"]);
+    let mut keys = needed
+        .into_iter()
+        .chain(["units.wave_frequency", "units.acceleration"]);
     let blamed = keys.find(given).unwrap_or(NEEDED[0]);
     context.refuse(
         ProblemKind::Missing,

@@ -48,6 +48,111 @@ fn the_body_force_is_a_pressure_rise_over_a_wavelength() {
 }
 
 #[test]
+fn gravity_pushes_along_the_wave_as_the_body_force_does() {
+    // The wave of the preset runs towards -z.
+    let pushed = preset("frictionless", &["drive.body_force=-0.001"]);
+    let heavy = preset("frictionless", &["body.gravity=[0.0, -0.002, 0.001]"]);
+    assert_eq!(heavy.body.gravity, [0.0, -0.002, 0.001]);
+    assert_eq!(heavy.axial_body_force(), -0.001);
+    assert_eq!(heavy.pressure_rise(), pushed.pressure_rise());
+    let turned = preset(
+        "frictionless",
+        &["body.gravity=[0, 0, 0.001]", "drive.direction=backward"],
+    );
+    assert_eq!(turned.axial_body_force(), 0.001);
+    let record = heavy.to_toml();
+    assert!(
+        record.contains("[body]\ngravity = [0.0, -0.002, 0.001]"),
+        "{record}"
+    );
+    assert_eq!(Configuration::from_toml("record", &record).unwrap(), heavy);
+    // What is not there is not stated, and a zero of either sign is the same run.
+    let (plain, none) = (
+        preset("frictionless", NO_OVERRIDES),
+        preset("frictionless", &["body.gravity=[0.0, -0.0, 0]"]),
+    );
+    assert!(!plain.to_toml().contains("gravity"));
+    assert_eq!(plain.run_hash(), none.run_hash());
+    assert_ne!(plain.physics_hash(), heavy.physics_hash());
+    assert!(!plain.has_body_force() && heavy.has_body_force());
+}
+
+#[test]
+fn gravity_in_si() {
+    let settings = [&BEADS[..], &["units.acceleration=[0, -9.81, 0]"]].concat();
+    let earth = preset("frictionless", &settings);
+    let units = earth.units.unwrap();
+    let expected = -9.81 * units.time() * units.time() / units.length();
+    let [x, y, z] = earth.body.gravity;
+    assert!((y / expected - 1.0).abs() < 1e-14, "{y}");
+    assert_eq!([x, z], [0.0; 2]);
+    let again = Configuration::from_toml("record", &earth.to_toml()).unwrap();
+    assert_eq!(again, earth);
+}
+
+#[test]
+fn gravity_that_cannot_be() {
+    let only_problem =
+        |preset: &str, overrides: &[&str]| only_problem(read(None, Some(preset), overrides));
+    let cases: [(&[&str], &str, &str); 5] = [
+        (&["body.gravity=[0, -1]"], "body.gravity", "too short"),
+        (&["body.gravity=[0, 0, 0, 1]"], "body.gravity", "too long"),
+        (&["body.gravity=-0.1"], "body.gravity", "not a list"),
+        (
+            &["body.gravity=[0, 1e7, 0]"],
+            "body.gravity[1]",
+            "too large",
+        ),
+        (
+            &["units.acceleration=[0, 0, -9.81]"],
+            "units.acceleration",
+            "units in SI need",
+        ),
+    ];
+    for (settings, key, message) in cases {
+        let found = only_problem("frictionless", settings);
+        assert_eq!(found.key.as_deref(), Some(key), "{found:?}");
+        assert!(found.message.contains(message), "{found:?}");
+    }
+    let mut both = BEADS.to_vec();
+    both.extend([
+        "units.acceleration=[0, 0, -9.81]",
+        "body.gravity=[0, 0, -1]",
+    ]);
+    let found = only_problem("frictionless", &both);
+    assert!(found.message.contains("exclude one another"), "{found:?}");
+    // Of the units of hard grains so large that nothing could be said of them.
+    let mut large = BEADS.to_vec();
+    large.extend(["units.stiffness=1e-9", "units.acceleration=[0, 1e6, 0]"]);
+    let found = only_problem("frictionless", &large);
+    assert_eq!(
+        found.key.as_deref(),
+        Some("units.acceleration"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn grains_settle_under_gravity_in_a_wall_that_stands_still() {
+    let settled = preset(
+        "frictionless",
+        &["body.gravity=[0, -0.001, 0]", "initial.state=settled"],
+    );
+    assert_eq!(settled.initial.axial_velocity, 0.0);
+    let text = "preset = \"frictionless\"\n[initial]\nstate = \"settled\"\n";
+    let weightless = only_problem(read(Some(text), None, NO_OVERRIDES));
+    assert_eq!(weightless.key.as_deref(), Some("initial.state"));
+    assert_eq!(weightless.labels[0].line_and_column().0, 3);
+    assert!(
+        weightless.message.contains("needs gravity"),
+        "{weightless:?}"
+    );
+    let settings = ["body.gravity=[0, -0.001, 0]", "initial.state=settled"];
+    let elastic = only_problem(read(None, Some("frictional"), &settings));
+    assert!(elastic.message.contains("stands still"), "{elastic:?}");
+}
+
+#[test]
 fn waveforms_by_name() {
     for (name, waveform) in [
         ("sine", Waveform::Sine),

@@ -158,7 +158,7 @@ fn strain_controlled(
         diameter_max: 1.0,
         state,
         axial_velocity: match state {
-            InitialState::Rest | InitialState::Placed => 0.0,
+            InitialState::Rest | InitialState::Settled | InitialState::Placed => 0.0,
             InitialState::Jammed => -strain_rate * lattice.wavelength,
         },
         seed: 1,

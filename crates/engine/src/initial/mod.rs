@@ -1,8 +1,9 @@
-//! Initial states: grains at rest in the tube, or gathered in its bellies and moving with the wave.
+//! Initial states: grains at rest in the tube, settled in it, or gathered in its bellies and moving with the wave.
 
 mod insertion;
 mod packing;
 mod relaxation;
+mod settling;
 
 use glam::DVec3;
 use peristalsis_physics::contact::Normal;
@@ -14,6 +15,7 @@ pub use peristalsis_physics::method::InitialState;
 
 pub(crate) use self::packing::uniform;
 pub use self::packing::{LARGEST_MEAN_OVERLAP, Packing, PackingReport};
+pub use self::settling::{AT_REST, settle};
 
 use crate::bodies::Bodies;
 use crate::error::EngineError;

@@ -103,6 +103,15 @@ impl PrescribedWall {
         self
     }
 
+    /// The same wall, standing still for ever as it is at time 0.
+    pub(crate) fn at_rest(&self) -> Self {
+        let mut still = self.clone();
+        still.amplitude = Schedule::constant(self.amplitude.value(0.0));
+        still.frequency = Schedule::constant(0.0);
+        still.move_to(0.0);
+        still
+    }
+
     /// Moves the wall to where it is at `time`.
     pub(crate) fn move_to(&mut self, time: f64) {
         self.move_with_amplitude(time, self.amplitude.value(time));

@@ -5,6 +5,7 @@ use glam::DVec3;
 use peristalsis_engine::{Ledger, Simulation, Tally};
 use peristalsis_physics::contact::TangentialHistory;
 use serde::Serialize;
+use serde_json::Value;
 
 /// Largest differences of each kind.
 #[derive(Clone, Copy, Debug)]
@@ -169,10 +170,14 @@ fn fields<T: Serialize>(one: &T, other: &T, scale: impl Fn(&str) -> f64) -> f64 
     most(fields.map(|(name, one)| {
         let other = &other[name];
         assert!(!one.is_u64() || one == other, "{name}: {one} and {other}");
-        match (one.as_f64(), other.as_f64()) {
+        let apart = |(one, other): (&Value, &Value)| match (one.as_f64(), other.as_f64()) {
             (Some(one), Some(other)) => share((one - other).abs(), one.abs().max(scale(name))),
             // No number is written as null.
             _ => f64::NAN,
+        };
+        match (one.as_array(), other.as_array()) {
+            (Some(one), Some(other)) => most(one.iter().zip(other).map(apart)),
+            _ => apart((one, other)),
         }
     }))
 }

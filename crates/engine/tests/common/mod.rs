@@ -58,7 +58,7 @@ pub(crate) fn parameters(
         time_step,
         skin: 0.3,
         kernel: Kernel::default(),
-        body_force: 0.0,
+        body_force: DVec3::ZERO,
     }
 }
 

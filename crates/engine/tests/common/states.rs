@@ -197,7 +197,11 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
             time_step,
             skin: numbers.one_of(&[0.02, 0.3, 0.7]),
             kernel: Kernel::Reference,
-            body_force: numbers.one_of(&[0.0, 0.01, -0.03]),
+            body_force: numbers.one_of(&[
+                DVec3::ZERO,
+                DVec3::new(0.0, 0.0, -0.03),
+                DVec3::new(0.01, -0.02, 0.005),
+            ]),
         },
     }
 }

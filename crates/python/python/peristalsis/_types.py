@@ -21,6 +21,9 @@ class Keywords(TypedDict, total=False):
     'jammed'
     """
 
+    acceleration: Sequence[float]
+    """units.acceleration. Gravity [x, y, z] in SI, instead of body.gravity: [0, -9.81, 0] is a horizontal tube on
+    Earth. (Unit: m s^-2.)"""
     amplitude: float
     """drive.amplitude. Amplitude b of the radius R = a + b g((c t + z)/lambda), g the waveform, at most a; strain
     control. (Unit: d.)"""
@@ -44,8 +47,10 @@ class Keywords(TypedDict, total=False):
     """wall.keep.balance. Whether a constant force on each wall sphere balances the springs in the straight tube."""
     body_force: float
     """drive.body_force. Body force on the grains g, force over mass along the wave: negative is back pressure,
-    against which the wave has to pump. With grains of several sizes it acts as gravity along the tube. The pressure
-    rise over a wavelength that it stands for is N m (-g) lambda/(L pi a^2). (Unit: d t^-2.)"""
+    against which the wave has to pump. It is gravity along the wave, to which body.gravity adds. The pressure rise
+    over a wavelength that both stand for is N m (-g) lambda/(L pi a^2), g their part along the wave. (Unit: d
+    t^-2.)"""
+    body_gravity: Sequence[float]
     contact_dissipation_form: Literal["printed", "viscoelastic"]
     contact_dissipation_time: float
     contact_kinetic_friction: float
@@ -116,8 +121,13 @@ class Keywords(TypedDict, total=False):
     grains_number: int
     grains_number_density: float
     grains_volume_fraction: float
+    gravity: Sequence[float]
+    """body.gravity. Gravity [x, y, z]: the acceleration of every grain by its weight. z is the tube's axis,
+    whichever way the wave runs, x and y lie across it: [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an
+    upright one. The wall has no weight of its own. drive.body_force adds to it; units.acceleration gives it in SI.
+    (Unit: d t^-2.)"""
     initial_axial_velocity: float
-    initial_state: Literal["rest", "jammed", "placed"]
+    initial_state: Literal["rest", "settled", "jammed", "placed"]
     integrator: Literal["verlet", "adams_bashforth"]
     """run.integrator. How the equations of motion are stepped."""
     kernel: Literal["fast", "reference"]
@@ -210,9 +220,9 @@ class Keywords(TypedDict, total=False):
     spring_stiffness: float
     """wall.spring_stiffness. Stiffness k_w of the spring between lattice neighbours; stress control. (Unit: m
     t^-2.)"""
-    state: Literal["rest", "jammed", "placed"]
-    """initial.state. How the grains stand at t = 0: spread over the tube at rest, gathered in the bellies and
-    moving with the wave, or placed by a program, which no file repeats."""
+    state: Literal["rest", "settled", "jammed", "placed"]
+    """initial.state. How the grains stand at t = 0: spread over the tube at rest, settled under gravity, gathered
+    in the bellies and moving with the wave, or placed by a program, which no file repeats."""
     static_friction: float
     """contact.static_friction. Static friction mu_s: a contact sticks while |f_t| < mu_s f_n. If only
     kinetic_friction is given, equal to it; with both 0 grains are frictionless and do not rotate. (A pure
@@ -245,6 +255,7 @@ class Keywords(TypedDict, total=False):
     tube_spheres_per_ring: int
     tube_wavelength: float
     tube_waves: int
+    units_acceleration: Sequence[float]
     units_density: float
     units_grain_diameter: float
     units_stiffness: float
@@ -320,7 +331,7 @@ class PumpingSummary(TypedDict):
     """What a summary says under ``pumping``."""
 
     body_force: float
-    """force over mass on the grains along the wave; negative is back pressure [d/t^2]"""
+    """force over mass on the grains along the wave, gravity's part with it; negative is back pressure [d/t^2]"""
     pressure_rise: float
     """pressure rise over a wavelength that the body force stands for [m/(d t^2)]"""
     useful_power: float | None

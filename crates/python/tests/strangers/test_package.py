@@ -28,7 +28,7 @@ def test_keywords_are_typed() -> None:
     """PYTHON, low: `preset(**keywords)` is `Any`."""
     hints = get_type_hints(_types.Keywords)
     assert hints["width"] is float and hints["waves"] is int
-    assert get_args(hints["initial_state"]) == get_args(hints["state"]) == ("rest", "jammed", "placed")
+    assert get_args(hints["initial_state"]) == get_args(hints["state"]) == ("rest", "settled", "jammed", "placed")
     assert set(get_args(hints["law"])) == {"linear", "hertz"} and set(get_args(hints["control"])) == {"strain", "stress"}
     unique = {keyword for keyword, keys in _keywords.keywords().items() if len(keys) == 1}
     assert set(hints) == unique

@@ -303,6 +303,22 @@ def test_progress_goes_to_a_log(tight: Simulation, caplog: pytest.LogCaptureFixt
         tight.run(periods=1, progress="loud")  # type: ignore[arg-type]
 
 
+def test_grains_settle_under_gravity_on_the_wall() -> None:
+    sim = Simulation.preset("frictionless", waves=2, width=1.6, gravity=[0, -0.002, 0], state="settled")
+    assert sim.time == 0 and not sim.velocities.any()
+    contacts = sim.contacts()
+    borne = contacts["force_y"][contacts["wall"]].sum()
+    weight = 0.002 * sim.configuration["grains.number"]
+    # The wall already moves, and its damping is in the force.
+    assert abs(borne / weight - 1) < 0.1
+    sim.run(periods=1)
+    assert sim.summary()["energy_residual"] < 1e-3
+    with pytest.raises(ConfigurationError, match="needs gravity"):
+        Simulation.preset("frictionless", state="settled")
+    with pytest.raises(ConfigurationError, match="too short"):
+        Simulation.preset("frictionless", gravity=[0, -1])
+
+
 def test_placed_grains_stay_in_order_and_say_that_no_file_repeats_them(tmp_path: Path) -> None:
     """PYTHON, what would delight: user-placed grains."""
     tube = Configuration("frictionless-fine", waves=2, strain_rate=0.05, seed=9)

@@ -95,8 +95,14 @@ fn title(configuration: &Configuration) -> String {
 fn particular(configuration: &Configuration) -> Option<String> {
     let waveform = configuration.drive.waveform;
     let waveform = (waveform != Waveform::Sine).then(|| format!("{waveform:?}").to_lowercase());
-    let force = configuration.drive.body_force;
-    let force = (force != 0.0).then(|| format!("*g* = {force}").replace('-', "−"));
+    let [x, y, z] = configuration.body.gravity;
+    let force = match (x, y) {
+        (0.0, 0.0) => configuration.axial_body_force().to_string(),
+        _ => format!("({x}, {y}, {z})"),
+    };
+    let force = configuration
+        .has_body_force()
+        .then(|| format!("*g* = {force}").replace('-', "−"));
     let words: Vec<String> = waveform.into_iter().chain(force).collect();
     (!words.is_empty()).then(|| words.join(",  "))
 }

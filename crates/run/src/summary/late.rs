@@ -26,20 +26,27 @@ pub struct Pumping {
 }
 
 impl Pumping {
-    /// Of the late samples of a run; `None` without a body force.
+    /// Of the late samples of a run; `None` without a body force along the wave.
     pub(super) fn of(configuration: &Configuration, late: &[Sample]) -> Option<Self> {
-        if configuration.drive.body_force == 0.0 {
+        let force = configuration.axial_body_force();
+        if force == 0.0 {
             return None;
         }
-        let useful_power = -mean_of(late, |sample| sample.body_power);
+        let [across, up, _] = configuration.body.gravity;
+        let power = |sample: &Sample| match (across, up) {
+            (0.0, 0.0) => sample.body_power,
+            // That of the rest of gravity is not pumping.
+            _ => force * sample.axial_momentum,
+        };
+        let useful_power = -mean_of(late, power);
         let wall_power = mean_of(late, |sample| sample.wall_power);
         let efficiency = if useful_power > 0.0 && wall_power > 0.0 {
             useful_power / wall_power
         } else {
             f64::NAN
         };
-        let beyond = |sample: &Sample| -sample.body_power - efficiency * sample.wall_power;
-        let power_error = error_of(late.iter().map(|sample| sample.body_power));
+        let beyond = |sample: &Sample| -power(sample) - efficiency * sample.wall_power;
+        let power_error = error_of(late.iter().map(power));
         Some(Self {
             pressure_rise: configuration.pressure_rise(),
             useful_power: (useful_power, power_error),

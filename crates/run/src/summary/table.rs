@@ -137,7 +137,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("bottleneck", "d", "late mean of the smallest bottleneck", Real(|s| s.mean(|sample| sample.bottleneck))).labelled("bottleneck / d"),
     setting("time_step", "t", "length of a step", Real(|c| c.run.time_step)).labelled("time step"),
     result("steps", "1", "steps done", Whole(|s| s.steps)),
-    result("body_force", "d/t^2", "force over mass on the grains along the wave; negative is back pressure", Real(|s| s.configuration.drive.body_force)).at("pumping.body_force").labelled("body force g"),
+    result("body_force", "d/t^2", "force over mass on the grains along the wave, gravity's part with it; negative is back pressure", Real(|s| s.configuration.axial_body_force())).at("pumping.body_force").labelled("body force g"),
     result("pressure_rise", "m/(d t^2)", "pressure rise over a wavelength that the body force stands for", Real(|s| s.configuration.pressure_rise())).at("pumping.pressure_rise").labelled("pressure rise"),
     result("wall_power_error", "m d^2/t^3", "standard error of wall_power", Real(|s| error_of(s.late.iter().map(|sample| sample.wall_power)))),
     result("useful_power", "m d^2/t^3", "late mean power of the flow against the body force", OptionalMeasured(|s| s.pumping.map(|pumping| pumping.useful_power))).at("pumping.useful_power").labelled("useful power"),

@@ -1,6 +1,8 @@
 //! Whether grains as soft, or as hard, as the units in SI make them can be what was meant.
 
-use peristalsis_configuration::{Configuration, Control, Elasticity, ScheduledParameter, Units};
+use peristalsis_configuration::{
+    Body, Configuration, Control, Elasticity, ScheduledParameter, Units,
+};
 use peristalsis_physics::contact::NormalLaw;
 
 use super::warning::Warning;
@@ -120,6 +122,9 @@ impl Material {
 /// Says that forces in our units become another multiple of the elasticity when it changes; nothing without such forces.
 fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String {
     let mut keys = Vec::new();
+    if configuration.body != Body::default() {
+        keys.push("body.gravity, unless units.acceleration gives it");
+    }
     if configuration.drive.body_force != 0.0 {
         keys.push("drive.body_force");
     }

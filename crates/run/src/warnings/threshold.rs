@@ -16,14 +16,14 @@ const PERIODS: f64 = 10.0;
 pub(super) fn out_of_reach(configuration: &Configuration) -> Option<Warning> {
     let threshold = configuration.observe.transition_threshold;
     let (start, state) = match configuration.initial.state {
-        InitialState::Rest | InitialState::Placed => (0.0, "at rest"),
+        InitialState::Rest | InitialState::Settled | InitialState::Placed => (0.0, "at rest"),
         InitialState::Jammed => (1.0, "jammed"),
     };
     let message = if threshold == start {
         format!(
             "J/Jmax = {threshold} is where a run that begins {state} starts, so that the first period decides"
         )
-    } else if threshold > 1.0 && configuration.drive.body_force <= 0.0 {
+    } else if threshold > 1.0 && configuration.axial_body_force() <= 0.0 {
         format!(
             "J/Jmax = {threshold} is above 1, the flow of grains that travel with the wave, which nothing drives beyond it"
         )
@@ -52,7 +52,9 @@ pub(super) fn missed(run: &Run) -> Option<Warning> {
         (None, Some(time)) if time < period => {
             let ladder = THRESHOLDS.into_iter().zip(recorder.transition_times());
             let is_beyond = |value: f64| match configuration.initial.state {
-                InitialState::Rest | InitialState::Placed => value > threshold && threshold >= 0.0,
+                InitialState::Rest | InitialState::Settled | InitialState::Placed => {
+                    value > threshold && threshold >= 0.0
+                }
                 InitialState::Jammed => value < threshold,
             };
             let soon = |time: Option<f64>| time.is_some_and(|time| time < PERIODS * period);

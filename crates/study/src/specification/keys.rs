@@ -23,7 +23,7 @@ pub(super) struct Keys {
     /// of `preset`.
     pub(super) file: Option<String>,
     /// Initial states that every point is run from. Missing: that of the base configuration.
-    #[schemars(extend("minItems" = 1, "items" = {"type": "string", "enum": ["rest", "jammed"]}))]
+    #[schemars(extend("minItems" = 1, "items" = {"type": "string", "enum": ["rest", "settled", "jammed"]}))]
     pub(super) states: Option<Vec<InitialState>>,
     /// Runs of each point, which differ in their random numbers alone.
     #[serde(default = "one")]

@@ -26,7 +26,7 @@ tolerance = 0.01
 /// w_c of runs from rest, and of those from jammed.
 fn critical(strain_rate: f64, state: InitialState) -> f64 {
     match state {
-        InitialState::Rest => 2.95 - 2.0 * strain_rate,
+        InitialState::Rest | InitialState::Settled => 2.95 - 2.0 * strain_rate,
         InitialState::Jammed | InitialState::Placed => 2.88,
     }
 }

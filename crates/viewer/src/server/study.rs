@@ -302,6 +302,7 @@ fn title_of(plan: &Plan, run: &PlannedRun) -> String {
         .collect();
     let start = match point.state {
         InitialState::Rest => "from rest",
+        InitialState::Settled => "from settled grains",
         InitialState::Jammed => "from jammed",
         InitialState::Placed => "from placed grains",
     };

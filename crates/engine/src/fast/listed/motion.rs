@@ -1,5 +1,6 @@
 //! Motion of the spheres from one evaluation of the forces to the next, in one pass.
 
+use glam::DVec3;
 use peristalsis_physics::method::Integrator;
 
 use super::record::Record;
@@ -119,8 +120,8 @@ pub(super) struct Motion<'a> {
     /// Taken off the force on each sphere of the wall.
     pub(super) mean_wall_force: Record,
     pub(super) rotates: bool,
-    /// Force over mass along +z, on the grains.
-    pub(super) body_force: f64,
+    /// Force over mass, on the grains.
+    pub(super) body_force: DVec3,
     pub(super) time_step: f64,
     pub(super) limit: f64,
     pub(super) length: f64,
@@ -158,7 +159,7 @@ impl Motion<'_> {
         let mut extremes = Extremes::<M>::none();
         if self.of_grains {
             // Nothing added leaves even the sign of a zero as it is.
-            let pushed = (self.body_force != 0.0).then_some(self.body_force);
+            let pushed = (self.body_force != DVec3::ZERO).then_some(self.body_force);
             let on_grains = (Record::ZERO, pushed);
             self.go_on::<M, S, FIRST, MOVES, false>(&scheme, on_grains, &mut extremes);
             if self.rotates {
@@ -192,12 +193,12 @@ impl Motion<'_> {
     >(
         &mut self,
         scheme: &S,
-        (mean, body_force): (Record, Option<f64>),
+        (mean, body_force): (Record, Option<DVec3>),
         extremes: &mut Extremes<M>,
     ) {
         let (limit_squared, length) = (self.limit * self.limit, self.length);
         let mean = mean.quad::<M::Quads>();
-        let push = body_force.map(|push| Record([0.0, 0.0, push, 0.0]));
+        let push = body_force.map(|push| Record::new(push, 0.0));
         let push = push.as_ref().map(Record::quad);
         let body = self.spheres.first;
         let count = self.spheres.position.len();

@@ -1,5 +1,6 @@
 //! Velocity Verlet, tile by tile: the kick that ends a step and the drift that begins the next in one pass.
 
+use glam::DVec3;
 use peristalsis_physics::real::Real;
 use rayon::prelude::*;
 
@@ -27,8 +28,8 @@ pub(super) enum Phase {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) time_step: f64,
-    /// Force over mass along +z.
-    pub(super) body_force: f64,
+    /// Force over mass.
+    pub(super) body_force: DVec3,
     /// Longest displacement of a step.
     pub(super) limit: f64,
 }
@@ -141,10 +142,13 @@ impl Move<'_> {
             let mut acceleration = self.acceleration.load(at);
             if KICK {
                 let mut now = self.force.load(at) * per_mass;
-                if body_force != 0.0 {
+                if body_force != DVec3::ZERO {
                     // Places without a grain stay where they are.
                     let holds = Lanes::load(self.origin, at).less(somewhere);
-                    now.z += Lanes::select(holds, Lanes::splat(body_force), Lanes::splat(0.0));
+                    let push = |by: f64| Lanes::select(holds, Lanes::splat(by), Lanes::splat(0.0));
+                    now.x += push(body_force.x);
+                    now.y += push(body_force.y);
+                    now.z += push(body_force.z);
                 }
                 self.force.store(at, LaneVector::<M>::default());
                 velocity = verlet.corrected(velocity, now, acceleration);

@@ -1,5 +1,6 @@
 //! The kernel from its beginning to the end of an advance.
 
+use glam::DVec3;
 use peristalsis_physics::contact::NormalLaw;
 
 use super::motion::{Motion, Phase};
@@ -72,7 +73,7 @@ impl Sorted {
         law: &N,
         course: &mut Course,
         bodies: &mut Bodies,
-        (body_force, limit): (f64, f64),
+        (body_force, limit): (DVec3, f64),
         steps: u64,
     ) -> Result<(), Runaway> {
         let motion = Motion {

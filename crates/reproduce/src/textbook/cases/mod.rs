@@ -2,6 +2,7 @@
 
 mod chain;
 mod errors;
+mod gravity;
 mod haff;
 mod material;
 mod normal;
@@ -25,6 +26,7 @@ pub const CASES: &[Case] = &[
     Case::new("oblique-impact", oblique::PROSE, oblique::examine),
     Case::new("spin", spin::PROSE, spin::examine),
     Case::new("slip-to-roll", roll::PROSE, roll::examine),
+    Case::new("gravity", gravity::PROSE, gravity::examine),
     Case::new("chain", chain::PROSE, chain::examine),
     Case::new("haff", haff::PROSE, haff::examine),
 ];

@@ -14,16 +14,19 @@ use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("roll.md"));
 
+pub(super) const FRICTION: CundallStrack = CundallStrack {
+    tangential_stiffness: 1.0,
+    tangential_damping: 0.1,
+    static_friction: 0.5,
+    kinetic_friction: 0.4,
+    sliding: Sliding::Spring,
+};
+
 const THROW: Throw = Throw {
     normal: spring(0.1),
-    friction: CundallStrack {
-        tangential_stiffness: 1.0,
-        tangential_damping: 0.1,
-        static_friction: 0.5,
-        kinetic_friction: 0.4,
-        sliding: Sliding::Spring,
-    },
+    friction: FRICTION,
     gravity: 1e-4,
+    slope: 0.0,
     speed: 0.02,
 };
 const TIME_STEP: f64 = 0.05;

@@ -1,10 +1,12 @@
 //! Experiments with the engine itself: its kernels and integrators, through its public interface.
 
 pub(crate) mod chain;
+pub(crate) mod falling;
 pub(crate) mod gas;
 pub(crate) mod impact;
 pub(crate) mod sliding;
 
+use glam::DVec3;
 use peristalsis_engine::wall::PrescribedWall;
 use peristalsis_engine::{Integrator, Kernel, Parameters, Wall};
 use peristalsis_physics::contact::{ContactModel, Normal};
@@ -56,7 +58,7 @@ impl Means {
             time_step,
             skin,
             kernel: self.kernel,
-            body_force: 0.0,
+            body_force: DVec3::ZERO,
         }
     }
 }

@@ -10,13 +10,15 @@ use crate::error::Result;
 /// Diameter of the sphere that stands for the plane \[d\]: a path of a few d inclines it by some 1e-5 only.
 const PLANE_DIAMETER: f64 = 1e6;
 
-/// A sphere of diameter and mass 1 on a plane; the body force g is its weight.
+/// A sphere of diameter and mass 1 on a plane, level or inclined.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Throw {
     pub(crate) normal: LinearSpringDashpot,
     pub(crate) friction: CundallStrack,
     /// g \[d/t^2\]
     pub(crate) gravity: f64,
+    /// tan(theta) of the plane, which falls along the throw.
+    pub(crate) slope: f64,
     /// v_0 \[d/t\]
     pub(crate) speed: f64,
 }
@@ -32,9 +34,15 @@ pub(crate) struct Instant {
 }
 
 impl Throw {
+    /// Gravity: down the plane is y, into it -z.
+    fn weight(&self) -> DVec3 {
+        let cosine = 1.0 / (1.0 + self.slope * self.slope).sqrt();
+        self.gravity * cosine * DVec3::new(0.0, self.slope, -1.0)
+    }
+
     /// Overlap under the weight \[d\].
     pub(crate) fn overlap(&self) -> f64 {
-        self.gravity / self.normal.normal_stiffness
+        -self.weight().z / self.normal.normal_stiffness
     }
 
     /// The motion at every step up to `duration`.
@@ -47,7 +55,7 @@ impl Throw {
         time_step: f64,
         duration: f64,
     ) -> Result<Vec<Instant>> {
-        // A ring of one sphere (almost) on the axis: its top is a plane across the axis, along which the weight acts.
+        // A ring of one sphere (almost) on the axis: its top is a plane across the axis.
         let off_axis = 1e-3;
         let height = 0.5 * (1.0 + PLANE_DIAMETER) - self.overlap();
         let mut bodies = Bodies::grains_at_rest(vec![DVec3::new(off_axis, 0.0, height)], vec![1.0]);
@@ -57,7 +65,7 @@ impl Throw {
             friction: Some(self.friction),
         };
         let parameters = Parameters {
-            body_force: -self.gravity,
+            body_force: self.weight(),
             ..means.parameters(contact, time_step, 0.3)
         };
         let mut simulation = Simulation::new(bodies, plane(PLANE_DIAMETER, off_axis), parameters);

@@ -1,0 +1,166 @@
+//! Gravity in any direction: on an incline, in free fall, and on the wall.
+
+use glam::DVec3;
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
+use peristalsis_physics::contact::{ContactModel, CundallStrack, Normal};
+
+use super::plot::points;
+use super::restitution::spring;
+use super::roll;
+use crate::columns::Columns;
+use crate::error::Result;
+use crate::textbook::case::Circumstances;
+use crate::textbook::experiment::Means;
+use crate::textbook::experiment::falling::{borne_weight, fall};
+use crate::textbook::experiment::sliding::Throw;
+use crate::{Check, Finding, Prose};
+
+pub(super) const PROSE: Prose = Prose::new(include_str!("gravity.md"));
+
+/// \[d/t^2\]
+const GRAVITY: f64 = 1e-4;
+const TIME_STEP: f64 = 0.05;
+const DURATION: f64 = 200.0;
+/// One coefficient: between two of them the start decides what a sphere does.
+const FRICTION: CundallStrack = CundallStrack {
+    static_friction: roll::FRICTION.kinetic_friction,
+    ..roll::FRICTION
+};
+/// tan(theta) from which on it gives way, 1.4.
+const STEEPEST_ROLLING: f64 = 3.5 * FRICTION.kinetic_friction;
+/// tan(theta) of the inclines.
+const SLOPES: [f64; 8] = [0.25, 0.5, 1.0, 1.2, 1.6, 2.0, 3.0, 4.0];
+
+/// a/g of a solid sphere on an incline of this slope.
+fn acceleration(slope: f64) -> f64 {
+    let sine = slope / (1.0 + slope * slope).sqrt();
+    if slope <= STEEPEST_ROLLING {
+        5.0 / 7.0 * sine
+    } else {
+        sine * (1.0 - FRICTION.kinetic_friction / slope)
+    }
+}
+
+/// A sphere on an incline, from rest.
+struct Row {
+    slope: f64,
+    /// a/g in the second half, after the spring of the contact has come to rest.
+    acceleration: f64,
+}
+
+impl Row {
+    fn simulate(slope: f64, means: Means) -> Result<Self> {
+        let throw = Throw {
+            normal: spring(0.1),
+            friction: FRICTION,
+            gravity: GRAVITY,
+            slope,
+            speed: 0.0,
+        };
+        let course = throw.simulate(means, TIME_STEP, DURATION)?;
+        let [middle, last] = [course.len() / 2, course.len() - 1].map(|step| course[step]);
+        Ok(Self {
+            slope,
+            acceleration: (last.velocity - middle.velocity) / (GRAVITY * (last.time - middle.time)),
+        })
+    }
+}
+
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
+    let mut finding = PROSE.described(&[]);
+    let mut rows = Vec::new();
+    for means in Means::INTEGRATORS {
+        for (kernel, means) in [("fast", means), ("plain", means.plainly())] {
+            circumstances.go_on()?;
+            let setting = format!("{}, {kernel} kernel", means.name());
+            let inclines = SLOPES.map(|slope| Row::simulate(slope, means));
+            let inclines = inclines.into_iter().collect::<Result<Vec<Row>>>()?;
+            for row in &inclines {
+                let setting = format!("tan(theta) = {}, {setting}", row.slope);
+                let (expected, found) = (acceleration(row.slope), row.acceleration);
+                let check = Check::relative("a/g on an incline", &setting, expected, found, 5e-3);
+                finding.checks.push(check.by("rolling or sliding"));
+            }
+            finding.checks.extend(falls(means, &setting)?);
+            finding.checks.extend(weights(means, &setting)?);
+            if rows.is_empty() {
+                rows = inclines;
+            }
+        }
+    }
+    finding.data = Some(
+        Columns::of(&rows)
+            .number("slope", "1", "tan(theta)", |row| row.slope)
+            .number("acceleration", "1", "a/g", |row| row.acceleration)
+            .table()?,
+    );
+    finding.figures = vec![PROSE.chart("incline", &[], drawing(&rows))?];
+    Ok(finding)
+}
+
+/// Without friction and with it: each has its own kernel.
+fn contacts() -> [(&'static str, ContactModel); 2] {
+    let normal = Normal::Linear(spring(0.1));
+    [("smooth", None), ("rough", Some(FRICTION))]
+        .map(|(name, friction)| (name, ContactModel { normal, friction }))
+}
+
+fn falls(means: Means, setting: &str) -> Result<Vec<Check>> {
+    let gravity = 1e-3 * DVec3::new(1.0, -2.0, 2.0);
+    let depth = 0.5 * gravity.length() * DURATION * DURATION;
+    let checks = contacts().into_iter().map(|(name, contact)| {
+        let found = fall(contact, means, gravity, (TIME_STEP, DURATION))?;
+        let apart = (found - 0.5 * gravity * DURATION * DURATION).length() / depth;
+        let check = Check::absolute(
+            "distance from where a grain falls to, over the depth",
+            &format!("{name}, {setting}"),
+            0.0,
+            apart,
+            1e-9,
+        );
+        Ok(check.by("g t^2/2"))
+    });
+    checks.collect()
+}
+
+fn weights(means: Means, setting: &str) -> Result<Vec<Check>> {
+    let mut checks = Vec::new();
+    for (name, contact) in contacts() {
+        for (tube, gravity) in [
+            ("horizontal", -2e-3 * DVec3::Y),
+            ("upright", -2e-3 * DVec3::Z),
+        ] {
+            let borne = borne_weight(contact, means, gravity)?;
+            let setting = format!("{tube} tube, {name} grains, {setting}");
+            let quantity = "force on the wall over the weight of settled grains";
+            let check = Check::relative(quantity, &setting, 1.0, borne, 0.01);
+            checks.push(check.by("balance of forces"));
+        }
+    }
+    Ok(checks)
+}
+
+fn drawing(rows: &[Row]) -> ChartFigure {
+    let line = |name: &str, from: f64, to: f64| {
+        let slopes: Vec<f64> = (0..=40_u32)
+            .map(|step| from + (to - from) * f64::from(step) / 40.0)
+            .collect();
+        let values: Vec<f64> = slopes.iter().map(|slope| acceleration(*slope)).collect();
+        Line::new(name, &slopes, &values)
+            .tint(Tint::Black)
+            .pattern(Pattern::Dashed)
+    };
+    let panel = ChartPanel::new("slope tan *θ*", "acceleration *a*/*g*")
+        .x_range(0.0..=4.2)
+        .y_range(0.0..=1.0)
+        .with(line("closed forms", 0.0, STEEPEST_ROLLING))
+        .with(line("", STEEPEST_ROLLING * (1.0 + 1e-9), 4.2))
+        .with(Reference::vertical(STEEPEST_ROLLING).label("7/2 *μ*"))
+        .with(
+            points("a sphere from rest", rows, |row| {
+                (row.slope, row.acceleration)
+            })
+            .series(0),
+        );
+    ChartFigure::new(panel)
+}
