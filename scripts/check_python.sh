@@ -24,7 +24,7 @@ cargo build --locked --package peristalsis
 PERISTALSIS_PROGRAM=$PWD/target/debug/peristalsis "$environment/bin/python" -m pytest crates/python
 "$environment/bin/python" -m pytest -c crates/python/pytest.ini --doctest-modules --pyargs peristalsis
 
-step "the same replicas through four pools"
+step "the same replicates through four pools"
 for pool in futures joblib dask ray; do
     "$environment/bin/python" "examples/python/with_$pool.py" | grep "J/Jmax" | sed "s/^/$pool: /"
 done | tee target/python-pools.txt

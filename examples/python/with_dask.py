@@ -3,7 +3,7 @@
 from dask.distributed import Client
 
 import peristalsis
-from replicas import CONFIGS, report
+from replicates import CONFIGS, report
 
 if __name__ == "__main__":
     with Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:

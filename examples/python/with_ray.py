@@ -3,10 +3,10 @@
 import ray
 
 import peristalsis
-from replicas import CONFIGS, report
+from replicates import CONFIGS, report
 
 if __name__ == "__main__":
     ray.init(num_cpus=2, include_dashboard=False)
-    replica = ray.remote(peristalsis.run)
-    report(ray.get([replica.remote(config) for config in CONFIGS]))
+    replicate = ray.remote(peristalsis.run)
+    report(ray.get([replicate.remote(config) for config in CONFIGS]))
     ray.shutdown()

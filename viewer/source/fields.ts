@@ -111,7 +111,7 @@ function eachContact({ touching, contacts }: Frame, see: (grain: number, force: 
   }
 }
 
-/** Position in the frame of the wave, in wavelengths from 0 to 1. */
+/** Position in the wave frame, in wavelengths from 0 to 1. */
 export function inWave(frame: Frame, tube: Welcome, z: number): number {
   const position = (tube.heading * z) / tube.wavelength - frame.period;
   return position - Math.floor(position);

@@ -72,7 +72,7 @@ export function drawBottleneck(chart: Chart, film: Film, clock: number, colours:
   return true;
 }
 
-/** Volume fraction and axial velocity in the frame of the wave, under the outline of the tube. */
+/** Volume fraction and axial velocity in the wave frame, under the outline of the tube. */
 export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welcome, colours: Ink): void {
   const frames = film.recent(shown, AVERAGED);
   const number = new Float64Array(BINS);

@@ -30,9 +30,9 @@ pub(crate) fn mean_and_scatter(series: &[f64]) -> (f64, f64) {
     (mean, series.iter().map(|x| (x - mean) * (x - mean)).sum())
 }
 
-/// Jackknife error of an estimator from its values with one replica left out: `sqrt((n - 1)/n sum (v_i - <v>)^2)`.
+/// Jackknife error of an estimator from its values with one replicate left out: `sqrt((n - 1)/n sum (v_i - <v>)^2)`.
 pub(crate) fn jackknife_error(without_one: &[f64]) -> f64 {
-    let replicas = without_one.len() as f64;
+    let replicates = without_one.len() as f64;
     let (_, scatter) = mean_and_scatter(without_one);
-    ((replicas - 1.0) / replicas * scatter).sqrt()
+    ((replicates - 1.0) / replicates * scatter).sqrt()
 }

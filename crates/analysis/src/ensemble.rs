@@ -1,10 +1,10 @@
-//! Moments across the replicas of an ensemble.
+//! Moments across the replicates of an ensemble.
 
 use crate::columns::{jackknife_error, mean_and_scatter};
 use crate::error::{Error, check_replica, checked, enough, same_length};
 use serde::{Deserialize, Serialize};
 
-/// Fewest replicas: the variance must exist with one of them left out.
+/// Fewest replicates: the variance must exist with one of them left out.
 const LEAST_REPLICAS: usize = 3;
 
 /// Mean and variance of independent values, with jackknife errors.
@@ -24,12 +24,12 @@ pub struct Moments {
 ///
 /// With `S = sum (x - <x>)^2` over all n values the rest has `S - n (x_i - <x>)^2/(n - 1)`, over n - 2.
 fn variances_without_one(sample: &[f64]) -> impl Iterator<Item = f64> {
-    let replicas = sample.len() as f64;
+    let replicates = sample.len() as f64;
     let (mean, scatter) = mean_and_scatter(sample);
     sample.iter().map(move |x| {
-        let rest = scatter - (x - mean) * (x - mean) * replicas / (replicas - 1.0);
+        let rest = scatter - (x - mean) * (x - mean) * replicates / (replicates - 1.0);
         // Round-off must not leave a negative variance.
-        rest.max(0.0) / (replicas - 2.0)
+        rest.max(0.0) / (replicates - 2.0)
     })
 }
 
@@ -53,35 +53,35 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
 /// (SIAM, 1982), chapter 3.
 pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
     let (mean, scatter) = mean_and_scatter(checked(sample, LEAST_REPLICAS)?);
-    let replicas = sample.len() as f64;
-    let variance = scatter / (replicas - 1.0);
+    let replicates = sample.len() as f64;
+    let variance = scatter / (replicates - 1.0);
     let without_one: Vec<f64> = variances_without_one(sample).collect();
     Ok(Moments {
         mean,
-        mean_error: (variance / replicas).sqrt(),
+        mean_error: (variance / replicates).sqrt(),
         variance,
         variance_error: jackknife_error(&without_one),
     })
 }
 
-/// Mean `<j>(t)` and second moment `chi_J(t) = <j^2> - <j>^2` across replicas at equal times.
+/// Mean `<j>(t)` and second moment `chi_J(t) = <j^2> - <j>^2` across replicates at equal times.
 ///
-/// `replicas`: the series of every replica, j = J/Jmax at the same times, one series per replica. Errors of the
-/// variance by the jackknife. They are errors at each time by itself: values at nearby times share their replicas and scatter
+/// `replicates`: the series of every replicate, j = J/Jmax at the same times, one series per replicate. Errors of the
+/// variance by the jackknife. They are errors at each time by itself: values at nearby times share their replicates and scatter
 /// together. Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans (SIAM, 1982), chapter 3.
 ///
 /// # Errors
-/// [`Error::TooFew`] below 3 replicas or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplica`].
-pub fn ensemble_moments<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Moments>, Error> {
-    enough(replicas.len(), LEAST_REPLICAS)?;
-    let times = replicas[0].as_ref().len();
-    for (replica, series) in replicas.iter().map(AsRef::as_ref).enumerate() {
+/// [`Error::TooFew`] below 3 replicates or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplica`].
+pub fn ensemble_moments<S: AsRef<[f64]>>(replicates: &[S]) -> Result<Vec<Moments>, Error> {
+    enough(replicates.len(), LEAST_REPLICAS)?;
+    let times = replicates[0].as_ref().len();
+    for (replicate, series) in replicates.iter().map(AsRef::as_ref).enumerate() {
         same_length(times, series.len())?;
-        check_replica(replica, series)?;
+        check_replica(replicate, series)?;
     }
     enough(times, 1)?;
     let at = |time: usize| {
-        let column = replicas.iter().map(|series| series.as_ref()[time]);
+        let column = replicates.iter().map(|series| series.as_ref()[time]);
         moments(&column.collect::<Vec<f64>>())
     };
     (0..times).map(at).collect()
@@ -114,10 +114,10 @@ mod tests {
 
     #[test]
     fn errors_of_mean_and_variance_cover_the_truth_in_two_cases_out_of_three() {
-        let (seeds, replicas) = (2000, 60);
+        let (seeds, replicates) = (2000, 60);
         let (mut mean_covered, mut variance_covered) = (0, 0);
         for seed in 0..seeds {
-            let found = moments(&white_noise(seed, replicas)).unwrap();
+            let found = moments(&white_noise(seed, replicates)).unwrap();
             mean_covered += u32::from(found.mean.abs() < found.mean_error);
             variance_covered += u32::from((found.variance - 1.0).abs() < found.variance_error);
         }
@@ -129,7 +129,7 @@ mod tests {
     #[test]
     fn the_moments_of_an_ensemble_follow_its_replicas_in_time() {
         // x(t) = 0.3 + a exp(-((t - 50)/10)^2), variance of a = 1.
-        let replicas: Vec<Vec<f64>> = white_noise(11, 400)
+        let replicates: Vec<Vec<f64>> = white_noise(11, 400)
             .iter()
             .map(|amplitude| {
                 let at = |t: i32| {
@@ -139,7 +139,7 @@ mod tests {
                 (0..100).map(at).collect()
             })
             .collect();
-        let series = ensemble_moments(&replicas).unwrap();
+        let series = ensemble_moments(&replicates).unwrap();
         assert_eq!(series.len(), 100);
         let peak = series[50];
         // sqrt(2/399) for normal amplitudes.
@@ -163,7 +163,7 @@ mod tests {
         let uneven = ensemble_moments(&[vec![0.0; 3], vec![0.0; 2], vec![0.0; 3]]);
         assert_refused!(uneven => LengthMismatch { expected: 3, found: 2 });
         let hole = ensemble_moments(&[[0.0, 1.0], [0.0, f64::NAN], [0.0, 1.0]]);
-        assert_refused!(hole => NonFiniteReplica { replica: 1, index: 1, .. });
+        assert_refused!(hole => NonFiniteReplica { replicate: 1, index: 1, .. });
     }
 
     proptest! {

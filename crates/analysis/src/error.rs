@@ -11,7 +11,7 @@ pub enum Error {
         /// Values given.
         found: usize,
     },
-    /// Columns or replicas that belong together differ in length.
+    /// Columns or replicates that belong together differ in length.
     #[error("a column of {found} values stands beside one of {expected}")]
     LengthMismatch {
         /// Length of the first column.
@@ -27,12 +27,12 @@ pub enum Error {
         /// The value.
         value: f64,
     },
-    /// A value of one replica is infinite or not a number.
-    #[error("value {index} of replica {replica} is {value}, which is not a finite number")]
+    /// A value of one replicate is infinite or not a number.
+    #[error("value {index} of replicate {replicate} is {value}, which is not a finite number")]
     NonFiniteReplica {
-        /// Number of the replica, from 0.
-        replica: usize,
-        /// Position in the replica, from 0.
+        /// Number of the replicate, from 0.
+        replicate: usize,
+        /// Position in the replicate, from 0.
         index: usize,
         /// The value.
         value: f64,
@@ -199,11 +199,11 @@ fn first(column: &[f64], is_so: impl Fn(f64) -> bool) -> Option<(usize, f64)> {
     Some((index, column[index]))
 }
 
-/// Refuses a series of a replica with a value that is not finite.
-pub(crate) fn check_replica(replica: usize, series: &[f64]) -> Result<(), Error> {
+/// Refuses a series of a replicate with a value that is not finite.
+pub(crate) fn check_replica(replicate: usize, series: &[f64]) -> Result<(), Error> {
     match first(series, |value| !value.is_finite()) {
         Some((index, value)) => Err(Error::NonFiniteReplica {
-            replica,
+            replicate,
             index,
             value,
         }),

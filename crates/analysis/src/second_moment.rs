@@ -121,8 +121,8 @@ fn checked_runs<S: AsRef<[f64]>>(runs: &[S], after_end: AfterEnd) -> Result<Vec<
     runs.iter()
         .map(AsRef::as_ref)
         .enumerate()
-        .map(|(replica, series)| {
-            check_replica(replica, series)?;
+        .map(|(replicate, series)| {
+            check_replica(replicate, series)?;
             let held = match after_end {
                 AfterEnd::Hold { samples } if !series.is_empty() => {
                     let last = &series[series.len().saturating_sub(samples.max(1))..];

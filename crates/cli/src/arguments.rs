@@ -380,11 +380,11 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "a number above 0".to_owned())
 }
 
-/// Seeds of replicas, each once.
+/// Seeds of replicates, each once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Seeds(pub(crate) Vec<u64>);
 
-/// Most replicas of one call.
+/// Most replicates of one call.
 const MOST_SEEDS: usize = 10_000;
 
 /// Threads that compute a run.

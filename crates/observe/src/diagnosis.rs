@@ -67,7 +67,7 @@ impl WallFault {
             ),
             FaultKind::BlownUp => (
                 format!("is {radius:.2} d from the axis, far outside the tube"),
-                "the bulge gives way: the force is too strong for the springs (drive.force_amplitude against \
+                "the belly gives way: the force is too strong for the springs (drive.force_amplitude against \
                  wall.spring_stiffness), or their natural length is too large; grains will escape",
             ),
         };

@@ -2,7 +2,7 @@
 //!
 //! A [`View`] is a simulation as it is, looked at once; [`Observer`] turns views into one [`Sample`] an interval; [`columns::COLUMNS`] is the table of what a sample
 //! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
-//! the frame of the wave, [`WaveByWave`] the flow of each wave over each period,
+//! the wave frame, [`WaveByWave`] the flow of each wave over each period,
 //! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow
 //! how grains turn; [`Load`] is what they bear.
 

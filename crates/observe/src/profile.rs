@@ -1,4 +1,4 @@
-//! Profiles in the frame of the wave: density, axial velocity, temperature and the forces of the wall against
+//! Profiles in the wave frame: density, axial velocity, temperature and the forces of the wall against
 //! (z - c t)/lambda.
 
 mod part;

@@ -241,8 +241,8 @@ pub(crate) fn power_exponent(x: Column, y: Column, error: Column) -> Answer {
 }
 
 #[pyfunction]
-pub(crate) fn ensemble_moments(replicas: Vec<Column>) -> Answer {
-    answer(|| analysis::ensemble_moments(&replicas))
+pub(crate) fn ensemble_moments(replicates: Vec<Column>) -> Answer {
+    answer(|| analysis::ensemble_moments(&replicates))
 }
 
 #[pyfunction]

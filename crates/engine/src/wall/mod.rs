@@ -176,7 +176,7 @@ impl Wall {
             .map_or_else(|| self.mean_radius(), |wave| wave.radius(z, self.cycles()))
     }
 
-    /// Place of the throat in the frame of the wave \[lambda\]: under strain control the radius is least there, under
+    /// Place of the throat in the wave frame \[lambda\]: under strain control the radius is least there, under
     /// stress control the inward force is largest.
     pub fn throat(&self) -> f64 {
         match self {

@@ -13,7 +13,7 @@ impl NewtonianPeristalsis {
         -2.0 * self.pressure_gradient(phase) * (wall * wall - radius * radius)
     }
 
-    /// Axial velocity in the frame of the wave, u - c, in c: negative where the fluid lags the wave.
+    /// Axial velocity in the wave frame, u - c, in c: negative where the fluid lags the wave.
     ///
     /// Arguments as in [`axial_velocity`](Self::axial_velocity). -1 at the wall.
     pub fn wave_frame_velocity(&self, radius: f64, phase: f64) -> f64 {
@@ -35,7 +35,7 @@ impl NewtonianPeristalsis {
         -area_slope * (radius / area) * (1.0 - 0.5 * section - lead * (1.0 - section))
     }
 
-    /// Stokes' stream function in the frame of the wave, in c a^2.
+    /// Stokes' stream function in the wave frame, in c a^2.
     ///
     /// Psi = (q + h^2)(s - s^2/2) - h^2 s/2,   s = (r/h)^2,   u - c = (1/r) dPsi/dr
     ///
@@ -63,7 +63,7 @@ pub(super) mod pathline {
         ]
     }
 
-    /// One Runge-Kutta step (order 4) of a particle at [phase, radius] in the frame of the wave.
+    /// One Runge-Kutta step (order 4) of a particle at [phase, radius] in the wave frame.
     pub(in super::super) fn advance(
         flow: &NewtonianPeristalsis,
         start: [f64; 2],

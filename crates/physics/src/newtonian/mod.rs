@@ -136,7 +136,7 @@ impl NewtonianPeristalsis {
         self.flow_rate() / self.mean_area()
     }
 
-    /// Flow rate through every section in the frame of the wave, q/(pi a^2 c); negative where the fluid lags the wave.
+    /// Flow rate through every section in the wave frame, q/(pi a^2 c); negative where the fluid lags the wave.
     pub fn wave_frame_flow_rate(&self) -> f64 {
         let open = 1.0 - self.amplitude_ratio * self.amplitude_ratio;
         -(open * open + self.pressure * open * open * open * open.sqrt()) / self.fourth_moment()

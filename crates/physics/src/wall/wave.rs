@@ -75,7 +75,7 @@ impl RadiusWave {
         }
     }
 
-    /// Position in the frame of the wave, in wavelengths in \[0, 1): the distance along the wave from a place of phase 0.
+    /// Position in the wave frame, in wavelengths in \[0, 1): the distance along the wave from a place of phase 0.
     ///
     /// A wave along +z is a function of z - ct; the position is (heading z - c t)/lambda folded to one wavelength.
     pub fn wave_frame_position(&self, z: f64, cycles: f64) -> f64 {

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def run(config: Mapping[str, Any]) -> RunSummary:
     """Run a configuration to its end and answer its summary.
 
-    Function, argument and answer can be pickled, so that replicas go through `concurrent.futures`, joblib, Dask or Ray
+    Function, argument and answer can be pickled, so that replicates go through `concurrent.futures`, joblib, Dask or Ray
     as they are.
 
     Parameters

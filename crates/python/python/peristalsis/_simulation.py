@@ -254,7 +254,7 @@ class Simulation(Made):
         Notes
         -----
         `configuration` has the whole course, so that it repeats the ramp. Where the flow changes its kind by chance, the
-        place of the jump depends on how fast the ramp is and on the seed: ramp several replicas.
+        place of the jump depends on how fast the ramp is and on the seed: ramp several replicates.
 
         Examples
         --------

@@ -280,7 +280,7 @@ fn conclude(
         };
         print_json(&json!({
             "folder": folder.to_string_lossy(),
-            "replicas": worked.iter().map(of_replica).collect::<Vec<_>>(),
+            "replicates": worked.iter().map(of_replica).collect::<Vec<_>>(),
             "complete": complete.len(),
             "flow_rate_ratio": flow.as_ref().map(Scatter::report),
             "transitions": transitions,

@@ -383,7 +383,7 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
         close(&flow["mean"], mean) && close(&flow["standard_deviation"], (squares / 2.0).sqrt())
     );
     assert!(close(&flow["error_of_mean"], (squares / 6.0).sqrt()));
-    assert_eq!(all["replicas"][1]["seed"], 2);
+    assert_eq!(all["replicates"][1]["seed"], 2);
 
     place.refuses(
         "run SMALL --seeds 2,3 --out many",

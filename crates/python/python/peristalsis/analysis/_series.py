@@ -351,13 +351,13 @@ def stationarity(series: Numbers) -> Stationarity:
     return result(Stationarity, _core.stationarity(reals(series)))
 
 
-def ensemble_moments(replicas: Iterable[Numbers]) -> list[Moments]:
-    """Mean and variance over replicas, at each place of their series, with jackknife errors.
+def ensemble_moments(replicates: Iterable[Numbers]) -> list[Moments]:
+    """Mean and variance over replicates, at each place of their series, with jackknife errors.
 
     Parameters
     ----------
-    replicas : iterable of array_like
-        Series of equal length, one a replica.
+    replicates : iterable of array_like
+        Series of equal length, one a replicate.
 
     Returns
     -------
@@ -369,7 +369,7 @@ def ensemble_moments(replicas: Iterable[Numbers]) -> list[Moments]:
     ValueError
         For series of unequal length.
     AnalysisError
-        For too few replicas, or values that are not finite.
+        For too few replicates, or values that are not finite.
 
     Examples
     --------
@@ -378,7 +378,7 @@ def ensemble_moments(replicas: Iterable[Numbers]) -> list[Moments]:
     >>> moments.mean, moments.variance
     (2.0, 1.0)
     """
-    rows = columns(*replicas)
+    rows = columns(*replicates)
     return [result(Moments, answer) for answer in _core.ensemble_moments(rows)]
 
 

@@ -7,4 +7,4 @@ CONFIGS = [{"preset": "frictionless", "width": 2.6, "waves": 2, "run.periods": 1
 
 def report(summaries: list[dict]) -> None:
     ratios = [summary["flow_rate_ratio"] for summary in summaries]
-    print(f"J/Jmax of {len(ratios)} replicas: {mean(ratios):.12f}")
+    print(f"J/Jmax of {len(ratios)} replicates: {mean(ratios):.12f}")
