@@ -42,7 +42,7 @@ pub(crate) enum Command {
     Check(CheckArguments),
     /// Write the spheres of a run, from its saved state on, for other programs to open.
     Trajectory(TrajectoryArguments),
-    /// Draw pictures and films of the tube of a run: from the side, cut across, or wave by wave in time.
+    /// Draw the tube of a run, as picture or film: from the side, cut across, or wave by wave in time.
     Render(RenderArguments),
     /// Watch and drive a tube in the browser, while the engine runs it.
     View(ViewArguments),
@@ -75,8 +75,8 @@ pub(crate) struct ConfigurationArguments {
     /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// How long to run, in periods of the wave: run.periods. With --resume, where the run is to end, complete or not, to
-    /// the same bits as if it had been asked for so much.
+    /// How long to run, in periods of the wave: run.periods. With --resume, the length of the whole run; a complete one
+    /// becomes longer, to the same bits as if it had been asked for at once.
     #[arg(long, value_name = "N", value_parser = positive)]
     pub(crate) periods: Option<f64>,
     /// The same in time [t]: run.duration.
@@ -98,7 +98,7 @@ impl ConfigurationArguments {
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArguments,
-    /// Folder for the results, one that holds no run; the default is a new one below runs/, NAME-1, NAME-2, ...
+    /// Folder for the results; it must not hold a run. Unless given: a new one, runs/NAME-1, runs/NAME-2, ...
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Threads to compute with, or auto: as many as pay for the number of grains. They change no bit.
@@ -107,8 +107,8 @@ pub(crate) struct RunArguments {
     /// Instructions to compute with; the default is the widest that the machine has.
     #[arg(long, value_name = "SET", value_parser = one_of(Instructions::ALL))]
     pub(crate) instructions: Option<Instructions>,
-    /// Go on with the run of a folder, to the same bits as if it had not been stopped; or, in a new folder, with the state
-    /// in a file, such as Python's `Simulation.save` writes.
+    /// Go on with a run, to the same bits as if it had never stopped. DIR is its folder. FILE is a state, such as Python's
+    /// `Simulation.save` writes: it goes on in a new folder.
     #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["file", "preset", "overrides", "seeds"])]
     pub(crate) resume: Option<PathBuf>,
     /// Run once with each of these seeds, side by side, and show mean and scatter: 1..10, or 1,2,5. Each has a folder,

@@ -84,8 +84,8 @@ pub(crate) struct RunArguments {
 /// How much work is done at a time, and for how long.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArguments {
-    /// Runs at a time, a processor each; the default is the number of processors. What fewer runs leave free, their threads
-    /// take.
+    /// Runs at a time, one processor each; unless given, as many as there are processors. Where fewer runs are left, each
+    /// takes more threads.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     /// Stop after this time, every run saved, such as 90s, 30m, 2h.
