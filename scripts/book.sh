@@ -56,6 +56,10 @@ fi
 cp -r "$RUSTDOC" target/book/rust
 grep -q "wall.keep" target/book/reference/configuration.html
 grep -q "<math" target/book/explanations/contact-laws.html
+# What a reader looks for is found.
+for word in bistable bottleneck "drive.width" transition_time; do
+    grep -q "$word" target/book/searchindex-*.js || { echo "the search finds no $word"; exit 1; }
+done
 
 step "links and pictures"
 python3 scripts/check_links.py target/book
