@@ -86,7 +86,7 @@ pub enum FormatError {
     },
 
     /// A file is no trajectory that can be gone on with.
-    #[error("{} is no trajectory that can be gone on with: {reason}", path.display())]
+    #[error("{} is no trajectory that can be continued: {reason}", path.display())]
     NotATrajectory {
         /// The file.
         path: PathBuf,

@@ -104,7 +104,7 @@ pub enum RunError {
         unit: &'static str,
     },
     /// The saved state of a run cannot be gone on with.
-    #[error("{} cannot be gone on with: {source}", path.display())]
+    #[error("{} cannot be continued: {source}", path.display())]
     State {
         /// The file.
         path: PathBuf,

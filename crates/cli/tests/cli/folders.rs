@@ -291,7 +291,7 @@ fn a_state_that_is_damaged_or_of_another_run_is_refused() {
             assert_eq!(outcome.code, Some(2), "{name}: {outcome:?}");
             outcome
                 .says(&[
-                    "results/state.checkpoint cannot be gone on with",
+                    "results/state.checkpoint cannot be continued",
                     "peristalsis run results/config.toml --out DIR",
                 ])
                 .says(&parts);

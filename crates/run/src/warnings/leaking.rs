@@ -40,9 +40,9 @@ pub(super) fn warning(
     });
     let part = parts.into_iter().fold(0.0, f64::max);
     let message = format!(
-        "a grain as fast as the wave carries {part:.2} of the energy at which the lattice gives way where the tube is \
-         widest: from about {LEAKING_ENERGY} on grains leave the tube, which `escaped` counts; take more spheres a ring \
-         and more rings a wave, or a lower drive.strain_rate"
+        "a grain as fast as the wave has {part:.2} of the energy that it needs to pass between the wall's spheres where \
+         the tube is widest: from about {LEAKING_ENERGY} on grains escape (`escaped` counts them); take more spheres a \
+         ring and more rings a wave, or a lower drive.strain_rate"
     );
     (part > LEAKING_ENERGY).then_some(Warning { key, message })
 }

@@ -58,8 +58,8 @@ fn overlapped(configuration: &Configuration, overlap: f64, limit: f64) -> Warnin
         }
     };
     let message = format!(
-        "grains overlapped by up to {:.0} % of a diameter, one another or the wall, where soft spheres pass for solid \
-         grains up to {:.0} %: take {harder}, fewer grains, a wider tube or a weaker drive",
+        "grains overlapped by up to {:.0} % of a diameter, with one another or with the wall; up to {:.0} % soft spheres \
+         pass for solid grains: take {harder}, fewer grains, a wider tube or a weaker drive",
         100.0 * overlap,
         100.0 * limit
     );
