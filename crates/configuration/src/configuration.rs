@@ -7,7 +7,10 @@ use std::f64::consts::PI;
 
 use peristalsis_physics::contact::ContactModel;
 use peristalsis_physics::method::{InitialState, Integrator, Kernel};
-use peristalsis_physics::wall::{Arrangement, DriveAngle, ElasticNetwork, WaveDirection, Waveform};
+use peristalsis_physics::wall::{
+    Arrangement, Contraction, DriveAngle, ElasticNetwork, SegmentDrive, Segments, WaveDirection,
+    Waveform,
+};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -183,7 +186,10 @@ pub struct Drive {
     pub strain_rate: f64,
     /// Shape of the wave.
     #[serde(default)]
-    pub waveform: Waveform,
+    pub waveform: WaveformName,
+    /// The segments of waveform = "segments", otherwise `None`.
+    #[serde(flatten)]
+    pub segments: Option<SegmentDrive>,
     /// Which way the wave runs: forward is towards -z under strain control and towards +z under stress control, as the
     /// source writes them. Flow rates are positive along the wave in either case.
     #[serde(default)]
@@ -200,7 +206,43 @@ pub struct Drive {
     pub schedules: Vec<Schedule>,
 }
 
+/// How the tube is squeezed, by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum WaveformName {
+    /// sin(2 pi phase): throats and bellies alike.
+    #[default]
+    Sine,
+    /// One smooth squeeze, cos^2, over half of each wavelength; elsewhere the tube is straight, of radius a.
+    Bolus,
+    /// A round roller pressed into the tube over half of each wavelength; elsewhere the tube is straight, of radius a.
+    Roller,
+    /// Segments of finite length that close and open in turn; an open one is straight, of radius a. Strain control.
+    Segments,
+}
+
+impl WaveformName {
+    /// The wave of this name; `None` for segments, which do not keep a shape.
+    pub fn travelling(self) -> Option<Waveform> {
+        match self {
+            Self::Sine => Some(Waveform::Sine),
+            Self::Bolus => Some(Waveform::Bolus),
+            Self::Roller => Some(Waveform::Roller),
+            Self::Segments => None,
+        }
+    }
+}
+
 impl Drive {
+    /// How a wavelength of the tube is squeezed.
+    pub fn contraction(&self) -> Contraction {
+        let segments = self.segments.as_ref().and_then(Segments::new);
+        match segments {
+            Some(segments) => Contraction::Segments(segments),
+            None => self.waveform.travelling().unwrap_or_default().into(),
+        }
+    }
+
     /// Period of the wave T = lambda/c \[t\]; `None` for a static wave.
     pub fn period(&self) -> Option<f64> {
         (self.strain_rate > 0.0).then(|| 1.0 / self.strain_rate)

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use peristalsis_physics::contact::{Normal, NormalLaw};
-use peristalsis_physics::wall::ElasticNetwork;
+use peristalsis_physics::wall::{ElasticNetwork, SegmentDrive};
 
 use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
@@ -61,6 +61,12 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
         arrangement.owns("file", key);
     }
     switches.push(arrangement);
+    let mut waveform = Switch::new("drive.waveform", &[]);
+    let segments = schema::of::<SegmentDrive>();
+    for (name, _) in segments["properties"].as_object().into_iter().flatten() {
+        waveform.owns("segments", format!("drive.{name}"));
+    }
+    switches.push(waveform);
     switches
 });
 

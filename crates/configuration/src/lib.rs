@@ -42,7 +42,7 @@ mod suggestion;
 mod units;
 
 pub use configuration::{
-    Body, Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall,
+    Body, Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall, WaveformName,
 };
 pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
@@ -52,7 +52,7 @@ pub use peristalsis_physics::contact::{
 };
 pub use peristalsis_physics::method::{InitialState, Integrator, Kernel};
 pub use peristalsis_physics::wall::{
-    DriveAngle, ElasticNetwork, NetForce, Tethers, WaveDirection, Waveform,
+    DriveAngle, ElasticNetwork, NetForce, SegmentDrive, Tethers, WaveDirection,
 };
 pub use presets::{PRESETS, Preset, preset};
 pub use reference::reference;

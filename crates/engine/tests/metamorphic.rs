@@ -150,7 +150,7 @@ fn turned_round(wall: &Wall) -> Wall {
             waving(
                 *wall.lattice().expect("a wall of rings"),
                 wave.mean_radius,
-                wave.waveform,
+                wave.contraction,
                 -wave.heading,
                 Schedule::constant(wave.amplitude),
                 Schedule::constant(wall.frequency(0.0)),
@@ -267,7 +267,7 @@ impl Units {
                 Wall::Prescribed(PrescribedWall::new(
                     self.lattice(*wall.lattice().expect("a wall of rings")),
                     self.length * wave.mean_radius,
-                    wave.waveform,
+                    wave.contraction,
                     wave.heading,
                     Schedule::constant(self.length * wave.amplitude),
                     Schedule::constant(wall.frequency(0.0) / self.time),

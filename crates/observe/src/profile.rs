@@ -7,7 +7,7 @@ use core::f64::consts::TAU;
 
 use glam::DVec3;
 use peristalsis_engine::Simulation;
-use peristalsis_physics::wall::Waveform;
+use peristalsis_physics::wall::{Contraction, RadiusWave, Waveform};
 
 pub use part::{PartOfWave, WavePart};
 
@@ -225,14 +225,20 @@ impl WaveFrameProfile {
         let (heading, cycles) = (wall.heading(), wall.cycles());
         let (waves, wavelength) = (wall.waves(), wall.wavelength());
         match &view.shape {
-            TubeShape::Wave(wave, _) => {
-                let outline = self.outline.of(wave.waveform, bins);
+            TubeShape::Wave(
+                wave @ RadiusWave {
+                    contraction: Contraction::Wave(waveform),
+                    ..
+                },
+                _,
+            ) => {
+                let outline = self.outline.of(*waveform, bins);
                 for (sums, &value) in last.iter_mut().zip(outline) {
                     let radius = wave.mean_radius + wave.amplitude * value;
                     sums.look_at(Slice::round(radius), f64::from(waves));
                 }
             }
-            shape @ TubeShape::Slices(..) => {
+            shape => {
                 for wave in 0..waves {
                     for (bin, sums) in last.iter_mut().enumerate() {
                         let position = (bin as f64 + 0.5) / bins as f64 + f64::from(wave) + cycles;

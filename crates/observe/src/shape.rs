@@ -72,7 +72,7 @@ impl TubeShape {
     /// Least radius anywhere \[d\]: twice it is the smallest bottleneck.
     pub fn narrowest(&self) -> f64 {
         match self {
-            Self::Wave(wave, _) => wave.mean_radius - wave.amplitude.abs(),
+            Self::Wave(wave, cycles) => wave.narrowest(*cycles),
             Self::Slices(slices, _) => slices
                 .iter()
                 .map(|slice| slice.mean)

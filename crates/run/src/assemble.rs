@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use peristalsis_configuration::{
-    Configuration, Control, InitialState, ScheduledParameter, Waveform,
+    Configuration, Control, InitialState, ScheduledParameter, WaveformName,
 };
 use peristalsis_engine::initial::{Packing, PackingReport, pack_unless, settle};
 use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall, Scattered};
@@ -236,9 +236,9 @@ pub fn walls(configuration: &Configuration) -> Wall {
         Control::Strain { width } => {
             let widths = schedule(ScheduledParameter::Width, width);
             let amplitude = widths.map(|width| tube.radius - 0.5 * width);
-            let (radius, waveform) = (tube.radius, drive.waveform);
+            let (radius, contraction) = (tube.radius, drive.contraction());
             let wall =
-                PrescribedWall::new(lattice, radius, waveform, heading, amplitude, frequency);
+                PrescribedWall::new(lattice, radius, contraction, heading, amplitude, frequency);
             Wall::Prescribed(match tube.arrangement {
                 Arrangement::Staggered | Arrangement::Aligned => wall,
                 Arrangement::Random => {
@@ -266,7 +266,8 @@ pub fn walls(configuration: &Configuration) -> Wall {
             force_amplitude: schedule(ScheduledParameter::ForceAmplitude, force_amplitude),
             frequency,
             heading,
-            waveform: drive.waveform,
+            // Segments are under strain control.
+            waveform: drive.waveform.travelling().unwrap_or_default(),
             angle,
         })),
     }
@@ -296,7 +297,7 @@ fn schedule(
 pub(crate) fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
     let drive = &configuration.drive;
     let changes = drive.schedule(ScheduledParameter::Width).is_some();
-    if changes || drive.waveform != Waveform::Sine || drive.period().is_none() {
+    if changes || drive.waveform != WaveformName::Sine || drive.period().is_none() {
         return None;
     }
     let amplitude = configuration.amplitude()?;

@@ -1,7 +1,9 @@
 //! The drive: alternatives resolved to width and strain rate.
 
 use super::{Context, plain, schedules};
-use crate::configuration::{Control, Drive, Tube};
+use peristalsis_physics::wall::{LONGEST_CYCLE, SegmentDrive, Segments};
+
+use crate::configuration::{Control, Drive, Tube, WaveformName};
 use crate::error::ProblemKind;
 use crate::keys::Keys;
 use crate::units::Units;
@@ -25,8 +27,61 @@ pub(super) fn drive(
     // A TOML -0.0 is a static wave like 0.0, and must be the same bits.
     drive.strain_rate = strain_rate + 0.0;
     drive.body_force += 0.0;
+    drive.segments = segments(&drive, tube, context)?;
     drive.schedules = schedules::schedules(written, &drive, tube, context)?;
     Some(drive)
+}
+
+/// The segments, with the order in which they close; `Some(None)` for a wave.
+fn segments(drive: &Drive, tube: &Tube, context: &mut Context<'_>) -> Option<Option<SegmentDrive>> {
+    if drive.waveform != WaveformName::Segments {
+        return Some(None);
+    }
+    let mut segments = drive.segments.clone().unwrap_or_default();
+    let number = segments.segments;
+    if segments.order.is_empty() {
+        segments.order = (1..=number).collect();
+    }
+    let kind = ProblemKind::Inconsistent;
+    if let Control::Stress { .. } = drive.control {
+        return context.refuse(
+            kind,
+            &["drive.waveform", "drive.control"],
+            "segments set the radius of the tube, and under stress control nothing does".into(),
+            "drive.control = \"strain\", or a waveform that travels: \"sine\", \"bolus\" or \"roller\"".into(),
+        );
+    }
+    if tube.rings_per_wave < 2 * number {
+        return context.refuse(
+            kind,
+            &["drive.segments", "tube.rings_per_wave"],
+            format!(
+                "{number} segments in {} rings of wall spheres: a segment needs two rings at least",
+                tube.rings_per_wave
+            ),
+            format!("drive.segments is at most {} here", tube.rings_per_wave / 2),
+        );
+    }
+    let cycle = segments.cycle();
+    if cycle > LONGEST_CYCLE {
+        return context.refuse(
+            kind,
+            &["drive.duty", "drive.rise", "drive.fall"],
+            format!(
+                "a segment closes, stays closed and opens within {cycle:.4} periods, more than one"
+            ),
+            "drive.duty + drive.rise + drive.fall is at most 1".into(),
+        );
+    }
+    if Segments::new(&segments).is_none() {
+        return context.refuse(
+            kind,
+            &["drive.order", "drive.segments"],
+            format!("drive.order does not name each of the {number} segments once"),
+            format!("a list of the numbers from 1 to {number}, each once, in the order in which the segments close"),
+        );
+    }
+    Some(Some(segments))
 }
 
 /// w = 2 (a - b), between 0 and 2 a.

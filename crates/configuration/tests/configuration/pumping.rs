@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use peristalsis_configuration::{Configuration, ProblemKind, ScheduledParameter, Waveform};
+use peristalsis_configuration::{Configuration, ProblemKind, ScheduledParameter, WaveformName};
 
 use crate::{NO_OVERRIDES, only_problem, preset, read, schema_errors};
 
@@ -153,11 +153,60 @@ fn grains_settle_under_gravity_in_a_wall_that_stands_still() {
 }
 
 #[test]
+fn segments_and_what_is_no_cycle_of_them() {
+    let segments = ["drive.waveform=segments"];
+    let plain = preset("frictionless", &segments);
+    let resolved = plain.drive.segments.clone().unwrap();
+    assert_eq!(
+        (resolved.segments, &resolved.order[..]),
+        (4, &[1, 2, 3, 4][..])
+    );
+    let record = plain.to_toml();
+    assert!(record.contains("order = [1, 2, 3, 4]"), "{record}");
+    assert_eq!(Configuration::from_toml("record", &record).unwrap(), plain);
+    let same = preset("frictionless", &[segments[0], "drive.order=[1,2,3,4]"]);
+    assert_eq!(same.physics_hash(), plain.physics_hash());
+    for other in ["drive.order=[1,3,2,4]", "drive.duty=0.3", "drive.edge=0.1"] {
+        let other = preset("frictionless", &[segments[0], other]);
+        assert_ne!(other.physics_hash(), plain.physics_hash());
+    }
+    // Another waveform drops what belongs to segments.
+    assert_eq!(preset("frictionless", NO_OVERRIDES).drive.segments, None);
+    let cases = [
+        ("drive.order=[1,2,3]", "drive.order", "each of the 4"),
+        ("drive.order=[1,2,3,3]", "drive.order", "each of the 4"),
+        ("drive.order=[0,1,2,3]", "drive.order[0]", "too small"),
+        ("drive.duty=0.7", "drive.duty", "1.1000 periods"),
+        ("drive.rise=0", "drive.rise", "too small"),
+        ("drive.segments=8", "drive.segments", "two rings"),
+        ("drive.segments=1", "drive.segments", "too small"),
+    ];
+    for (setting, key, message) in cases {
+        let found = only_problem(read(None, Some("frictionless"), &[segments[0], setting]));
+        assert_eq!(found.key.as_deref(), Some(key), "{found:?}");
+        assert!(found.message.contains(message), "{found:?}");
+    }
+    let text = "preset = \"frictionless\"\n[drive]\nduty = 0.3\n";
+    let alone = only_problem(read(Some(text), None, NO_OVERRIDES));
+    assert_eq!(alone.key.as_deref(), Some("drive.duty"));
+    let said = alone.to_string();
+    assert!(
+        said.contains("waveform") && alone.labels[0].line_and_column().0 == 3,
+        "{said}"
+    );
+    let elastic = only_problem(read(None, Some("frictional"), &segments));
+    assert!(
+        elastic.message.contains("under stress control"),
+        "{elastic:?}"
+    );
+}
+
+#[test]
 fn waveforms_by_name() {
     for (name, waveform) in [
-        ("sine", Waveform::Sine),
-        ("bolus", Waveform::Bolus),
-        ("roller", Waveform::Roller),
+        ("sine", WaveformName::Sine),
+        ("bolus", WaveformName::Bolus),
+        ("roller", WaveformName::Roller),
     ] {
         let setting = format!("drive.waveform={name}");
         assert_eq!(preset("frictional", &[&setting]).drive.waveform, waveform);

@@ -90,7 +90,7 @@ impl<'a> Region<'a> {
 /// Axial position of the middle of the belly, to a thousandth of a wavelength.
 fn belly(wave: &RadiusWave, cycles: f64) -> f64 {
     let wavelength = wave.wavelength;
-    if wave.waveform.largest() == 0.0 {
+    if wave.contraction.largest() == 0.0 {
         // Straight but for the squeeze: half way from throat to throat, at phase 1/4.
         let place = wave.heading * (cycles - 0.25);
         return (place - place.floor()) * wavelength;

@@ -54,7 +54,7 @@ impl Wall {
                 let (this, other) = (this.wave(), other.wave());
                 let same = stands
                     && this.mean_radius == other.mean_radius
-                    && this.waveform == other.waveform
+                    && this.contraction == other.contraction
                     && this.heading == other.heading;
                 (same, (this.amplitude, other.amplitude))
             }

@@ -7,7 +7,7 @@ use core::f64::consts::TAU;
 
 use glam::DVec3;
 use peristalsis_physics::contact::Contact;
-use peristalsis_physics::wall::{Lattice, RadiusWave, Ring, Schedule, Waveform};
+use peristalsis_physics::wall::{Contraction, Lattice, RadiusWave, Ring, Schedule, Waveform};
 
 pub(crate) use self::rings::Rings;
 pub use self::scattered::Scattered;
@@ -70,7 +70,7 @@ impl PrescribedWall {
     pub fn new(
         lattice: Lattice,
         mean_radius: f64,
-        waveform: Waveform,
+        contraction: impl Into<Contraction>,
         heading: f64,
         amplitude: Schedule,
         frequency: Schedule,
@@ -79,7 +79,7 @@ impl PrescribedWall {
             mean_radius,
             amplitude: amplitude.value(0.0),
             wavelength: lattice.wavelength,
-            waveform,
+            contraction: contraction.into(),
             heading,
         };
         let mut wall = Self {
@@ -130,7 +130,7 @@ impl PrescribedWall {
     fn move_with_amplitude(&mut self, time: f64, amplitude: f64) {
         self.cycles = self.frequency.integral(time);
         self.wave.amplitude = amplitude;
-        let is_sine = self.wave.waveform == Waveform::Sine;
+        let is_sine = self.wave.contraction == Contraction::Wave(Waveform::Sine);
         self.now = Instant {
             cycles: self.cycles,
             frequency: self.frequency.value(time),

@@ -18,7 +18,9 @@ pub(crate) use peristalsis_physics::contact::{
     ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
     ViscoelasticHertz,
 };
-pub(crate) use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+pub(crate) use peristalsis_physics::wall::{
+    Contraction, Lattice, Schedule, SegmentDrive, Segments, Waveform,
+};
 
 pub(crate) use self::apart::Apart;
 pub(crate) use self::states::{Row, State, Tube, lively, random, rows};
@@ -111,11 +113,24 @@ pub(crate) fn prescribed(
     )
 }
 
+/// Three segments that close out of their order.
+pub(crate) fn segments() -> Contraction {
+    let drive = SegmentDrive {
+        segments: 3,
+        order: vec![1, 3, 2],
+        duty: 0.3,
+        rise: 0.2,
+        fall: 0.1,
+        edge: 0.4,
+    };
+    Contraction::Segments(Segments::new(&drive).expect("a cycle"))
+}
+
 /// A strain-controlled tube of any waveform that follows schedules.
 pub(crate) fn waving(
     lattice: Lattice,
     mean_radius: f64,
-    waveform: Waveform,
+    contraction: impl Into<Contraction>,
     heading: f64,
     amplitude: Schedule,
     frequency: Schedule,
@@ -123,7 +138,7 @@ pub(crate) fn waving(
     let wall = PrescribedWall::new(
         lattice,
         mean_radius,
-        waveform,
+        contraction,
         heading,
         amplitude,
         frequency,

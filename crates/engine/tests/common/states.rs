@@ -265,7 +265,12 @@ fn driven(
     waving(
         lattice,
         radius,
-        numbers.one_of(&Waveform::ALL),
+        numbers.one_of(&[
+            Waveform::Sine.into(),
+            Waveform::Bolus.into(),
+            Waveform::Roller.into(),
+            segments(),
+        ]),
         numbers.one_of(&[1.0, -1.0]),
         numbers.schedule(amplitude, time_step),
         numbers.schedule(frequency, time_step),

@@ -4,6 +4,7 @@ pub mod arrangement;
 pub mod elastic;
 pub mod lattice;
 pub mod schedule;
+pub mod segments;
 pub mod wave;
 pub mod waveform;
 
@@ -11,5 +12,6 @@ pub use arrangement::Arrangement;
 pub use elastic::{DriveAngle, ElasticNetwork, NetForce, Tethers};
 pub use lattice::{Lattice, WallSphere};
 pub use schedule::Schedule;
-pub use wave::{RadiusWave, Ring, WaveDirection};
+pub use segments::{LONGEST_CYCLE, SegmentDrive, Segments, Squeeze};
+pub use wave::{Contraction, RadiusWave, Ring, WaveDirection};
 pub use waveform::Waveform;

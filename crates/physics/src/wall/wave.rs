@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Waveform;
+use super::{Segments, Squeeze, Waveform};
 
 /// Which way the wave runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -16,10 +16,35 @@ pub enum WaveDirection {
     Backward,
 }
 
+/// How a wavelength of the tube is squeezed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Contraction {
+    /// By a wave that keeps its shape.
+    Wave(Waveform),
+    /// By segments in turn.
+    Segments(Segments),
+}
+
+impl From<Waveform> for Contraction {
+    fn from(waveform: Waveform) -> Self {
+        Self::Wave(waveform)
+    }
+}
+
+impl Contraction {
+    /// Largest value anywhere, at any time.
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::Wave(waveform) => waveform.largest(),
+            Self::Segments(_) => 0.0,
+        }
+    }
+}
+
 /// Radius of a peristaltic tube and its velocity.
 ///
 /// R(z, t) = a + b g(s z/lambda + c t/lambda), g the waveform, s = 1 for a wave towards -z and s = -1 for one towards
-/// +z
+/// +z; of segments a + b G(-s z/lambda, c t/lambda), see [`Segments`]
 ///
 /// a, b, z, lambda \[d\], to the centres of the wall spheres; c t/lambda in cycles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,8 +55,8 @@ pub struct RadiusWave {
     pub amplitude: f64,
     /// lambda \[d\]
     pub wavelength: f64,
-    /// g
-    pub waveform: Waveform,
+    /// g or G
+    pub contraction: Contraction,
     /// +1.0 where the wave runs towards +z, -1.0 where it runs towards -z.
     pub heading: f64,
 }
@@ -56,13 +81,47 @@ impl RadiusWave {
 
     /// R at z \[d\].
     pub fn radius(&self, z: f64, cycles: f64) -> f64 {
-        self.mean_radius + self.amplitude * self.waveform.value(self.phase(z, cycles))
+        let value = match &self.contraction {
+            Contraction::Wave(waveform) => waveform.value(self.phase(z, cycles)),
+            Contraction::Segments(segments) => segments.squeeze(self.along(z), cycles).value,
+        };
+        self.mean_radius + self.amplitude * value
+    }
+
+    /// Least R anywhere now \[d\].
+    pub fn narrowest(&self, cycles: f64) -> f64 {
+        let depth = match &self.contraction {
+            Contraction::Wave(_) => 1.0,
+            Contraction::Segments(segments) => segments.depth(cycles),
+        };
+        self.mean_radius - depth * self.amplitude.abs()
     }
 
     /// The wall at z, for frequency c/lambda and rate of change db/dt of the amplitude.
     pub fn ring(&self, z: f64, cycles: f64, frequency: f64, amplitude_rate: f64) -> Ring {
-        let value_and_slope = self.waveform.value_and_slope(self.phase(z, cycles));
-        self.ring_of(value_and_slope, frequency, amplitude_rate)
+        match &self.contraction {
+            Contraction::Wave(waveform) => {
+                let value_and_slope = waveform.value_and_slope(self.phase(z, cycles));
+                self.ring_of(value_and_slope, frequency, amplitude_rate)
+            }
+            Contraction::Segments(segments) => {
+                let Squeeze {
+                    value,
+                    in_time,
+                    along,
+                } = segments.squeeze(self.along(z), cycles);
+                Ring {
+                    radius: self.mean_radius + self.amplitude * value,
+                    velocity: self.amplitude * frequency * in_time + amplitude_rate * value,
+                    slope: self.heading / self.wavelength * self.amplitude * along,
+                }
+            }
+        }
+    }
+
+    /// Place along the wave, in wavelengths.
+    fn along(&self, z: f64) -> f64 {
+        self.heading * z / self.wavelength
     }
 
     /// The wall where the waveform has the given value and slope against phase.
@@ -89,13 +148,14 @@ mod tests {
     use core::f64::consts::TAU;
 
     use super::*;
+    use crate::wall::SegmentDrive;
 
     fn wave(heading: f64) -> RadiusWave {
         RadiusWave {
             mean_radius: 1.5,
             amplitude: 0.25,
             wavelength: 10.0,
-            waveform: Waveform::Sine,
+            contraction: Waveform::Sine.into(),
             heading,
         }
     }
@@ -114,8 +174,16 @@ mod tests {
 
     #[test]
     fn velocity_and_slope_are_the_derivatives_of_the_radius() {
-        for heading in [-1.0, 1.0] {
-            let wave = wave(heading);
+        let segments = Segments::new(&SegmentDrive::default()).unwrap();
+        let contractions = [Waveform::Sine.into(), Contraction::Segments(segments)];
+        for (heading, contraction) in [-1.0, 1.0]
+            .into_iter()
+            .flat_map(|heading| contractions.map(|contraction| (heading, contraction)))
+        {
+            let wave = RadiusWave {
+                contraction,
+                ..wave(heading)
+            };
             let (frequency, z, cycles, dt) = (0.1, 2.3, 0.77, 1e-5);
             let later = wave.radius(z, cycles + frequency * dt);
             let earlier = wave.radius(z, cycles - frequency * dt);

@@ -4,7 +4,7 @@ mod profile;
 mod snapshot;
 
 use peristalsis_analysis::number::{plain, with_error};
-use peristalsis_configuration::{Configuration, Control, ScheduledParameter, Waveform};
+use peristalsis_configuration::{Configuration, Control, ScheduledParameter, WaveformName};
 use peristalsis_figures::chart::{
     Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
     Reference, Tint,
@@ -94,7 +94,7 @@ fn title(configuration: &Configuration) -> String {
 /// What sets a run apart from most: its waveform, its body force.
 fn particular(configuration: &Configuration) -> Option<String> {
     let waveform = configuration.drive.waveform;
-    let waveform = (waveform != Waveform::Sine).then(|| format!("{waveform:?}").to_lowercase());
+    let waveform = (waveform != WaveformName::Sine).then(|| format!("{waveform:?}").to_lowercase());
     let [x, y, z] = configuration.body.gravity;
     let force = match (x, y) {
         (0.0, 0.0) => configuration.axial_body_force().to_string(),

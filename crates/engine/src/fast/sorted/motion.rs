@@ -133,6 +133,7 @@ impl Move<'_> {
         let per_mass = Lanes::splat(self.per_mass);
         let limit_squared = Lanes::splat(limit * limit);
         let somewhere = Lanes::splat(0.5 * NOWHERE);
+        let pushed = body_force != DVec3::ZERO;
         let mut least = Lanes::splat(f64::INFINITY);
         let mut largest = Lanes::splat(f64::NEG_INFINITY);
         let mut most_lateral = Lanes::splat(0.0);
@@ -142,7 +143,7 @@ impl Move<'_> {
             let mut acceleration = self.acceleration.load(at);
             if KICK {
                 let mut now = self.force.load(at) * per_mass;
-                if body_force != DVec3::ZERO {
+                if pushed {
                     // Places without a grain stay where they are.
                     let holds = Lanes::load(self.origin, at).less(somewhere);
                     let push = |by: f64| Lanes::select(holds, Lanes::splat(by), Lanes::splat(0.0));
