@@ -97,16 +97,30 @@ class Keywords(TypedDict, total=False):
     drive_body_force: float
     drive_control: Literal["strain", "stress"]
     drive_direction: Literal["forward", "backward"]
+    drive_duty: float
+    drive_edge: float
+    drive_fall: float
     drive_force_amplitude: float
+    drive_order: Sequence[int]
     drive_ramp_periods: float
+    drive_rise: float
     drive_schedule: Literal["sudden", "ramp"] | Mapping[str, Any] | Sequence[Mapping[str, Any]]
+    drive_segments: int
     drive_strain_rate: float
     drive_wave_speed: float
-    drive_waveform: Literal["sine", "bolus", "roller"]
+    drive_waveform: Literal["sine", "bolus", "roller", "segments"]
     drive_width: float
     duration: float
     """run.duration. Length of the run in time, rounded up to whole samples; the only choice for a static wave.
     (Unit: t.)"""
+    duty: float
+    """drive.duty. Part of the period for which a segment is closed; duty + rise + fall is at most 1; waveform =
+    "segments". (Unit: periods.)"""
+    edge: float
+    """drive.edge. Length of the way from one segment to the next, over that of a segment; waveform = "segments". (A
+    pure number.)"""
+    fall: float
+    """drive.fall. Part of the period in which a segment opens; waveform = "segments". (Unit: periods.)"""
     file: str
     """tube.file. Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the
     columns angle (rad) and place (d), one sphere a line. Its path is that from the configuration file, or from
@@ -161,6 +175,9 @@ class Keywords(TypedDict, total=False):
     observe_profile_bins: int
     observe_samples_per_period: int
     observe_transition_threshold: float
+    order: Sequence[int]
+    """drive.order. The segments in the order in which they close, counted from 1 along the wave, each once;
+    waveform = "segments". Missing: one after the other along the wave. (A pure number.)"""
     periods: float
     """run.periods. Length of the run in wave periods, rounded up to whole samples. (Unit: periods.)"""
     places: Sequence[float]
@@ -188,6 +205,8 @@ class Keywords(TypedDict, total=False):
     """tube.rings_per_wave. Rings in a wavelength: even under strain control, where they are staggered; under stress
     control an odd number needs an even number of waves. Random and disordered walls have as many spheres as these
     rings; those of a file stand without them. (A pure number.)"""
+    rise: float
+    """drive.rise. Part of the period in which a segment closes; waveform = "segments". (Unit: periods.)"""
     run_duration: float
     run_integrator: Literal["verlet", "adams_bashforth"]
     run_kernel: Literal["fast", "reference"]
@@ -197,7 +216,8 @@ class Keywords(TypedDict, total=False):
     run_time_step: float
     samples_per_period: int
     """observe.samples_per_period. Samples of the time series in one wave period; a static run has 200 samples in
-    all. (A pure number.)"""
+    all. In a run of more than 262,144 samples every two neighbours become one, again and again: memory is bounded.
+    (A pure number.)"""
     schedule: Literal["sudden", "ramp"] | Mapping[str, Any] | Sequence[Mapping[str, Any]]
     """drive.schedule. How the drive's parameters follow time: "sudden" (constant from t = 0), "ramp" (the amplitude
     grows from nothing within ramp_periods), a table such as { form = "ramp", parameter = "width", from = 3.0, to =
@@ -206,6 +226,8 @@ class Keywords(TypedDict, total=False):
     one."""
     seed: int
     """run.seed. Seed of the random numbers that place the grains. (A pure number.)"""
+    segments: int
+    """drive.segments. Number n of segments in a wavelength; waveform = "segments". (A pure number.)"""
     sliding: Literal["spring", "balance", "literal"]
     """contact.sliding. What becomes of the tangential displacement while a contact slides. Without effect while
     both frictions are 0."""
@@ -283,7 +305,7 @@ class Keywords(TypedDict, total=False):
     drive.wave_speed, with which the wave in SI follows stiffness or young_modulus. (Unit: Hz.)"""
     wave_speed: float
     """drive.wave_speed. Speed c of the wave; 0 is a static wave and needs run.duration. (Unit: d t^-1.)"""
-    waveform: Literal["sine", "bolus", "roller"]
+    waveform: Literal["sine", "bolus", "roller", "segments"]
     """drive.waveform. Shape of the wave."""
     wavelength: float
     """tube.wavelength. Wavelength lambda. (Unit: d.)"""
