@@ -19,6 +19,13 @@ for notice in LICENSE-MIT LICENSE-APACHE THIRD-PARTY.txt; do
 done
 "$environment/bin/pip" install --quiet --force-reinstall --no-deps "$wheel"
 
+step "the source"
+"$environment/bin/maturin" sdist --out target/sdist
+# What the program holds from outside of its crates.
+for file in studies/quick/length.toml studies/length.toml THIRD-PARTY.txt; do
+    tar -tzf target/sdist/peristalsis-*.tar.gz | grep "/$file$" > /dev/null || { echo "the source lacks $file"; exit 1; }
+done
+
 step "tests"
 cargo build --locked --package peristalsis
 PERISTALSIS_PROGRAM=$PWD/target/debug/peristalsis "$environment/bin/python" -m pytest crates/python
