@@ -75,12 +75,12 @@ pub(crate) struct ConfigurationArguments {
     /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// How long to run, in periods of the wave: run.periods. With --resume, the length of the whole run; a complete one
-    /// becomes longer, to the same bits as if it had been asked for at once.
-    #[arg(long, value_name = "N", value_parser = positive)]
+    /// How long to run, in periods of the wave: run.periods, of drive.strain_rate where the rate changes. With --resume, the
+    /// length of the whole run; a complete one becomes longer, to the same bits as if it had been asked for at once.
+    #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) periods: Option<f64>,
     /// The same in time [t]: run.duration.
-    #[arg(long, value_name = "T", conflicts_with = "periods", value_parser = positive)]
+    #[arg(long, value_name = "T", conflicts_with = "periods", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
 }
 
@@ -88,8 +88,8 @@ impl ConfigurationArguments {
     /// The length of the run as a setting, if one is asked for.
     pub(crate) fn length(&self) -> Option<String> {
         match (self.periods, self.duration) {
-            (Some(periods), _) => Some(format!("run.periods={periods}")),
-            (None, duration) => Some(format!("run.duration={}", duration?)),
+            (Some(periods), _) => Some(format!("run.periods={periods:?}")),
+            (None, duration) => Some(format!("run.duration={:?}", duration?)),
         }
     }
 }

@@ -34,10 +34,10 @@ pub(crate) enum Failure {
     /// The command line asks for something that does not exist.
     #[error("{message}")]
     Usage { message: String, help: String },
-    /// More grains than the tube holds.
+    /// A configuration that cannot begin, such as one of more grains than the tube holds.
     #[error("{place}: {error}")]
-    DoesNotFit {
-        /// Where their number is given, as `file:line: text` or the override.
+    CannotBegin {
+        /// Where the key is given, as `file:line: text` or the override.
         place: String,
         error: RunError,
     },
@@ -107,7 +107,7 @@ impl Failure {
                 "FILE is a text file in TOML, UTF-8; `peristalsis presets frictionless` prints one",
             ),
             Self::Usage { help, .. } => wrong(help),
-            Self::DoesNotFit { .. } => wrong(FEWER_GRAINS),
+            Self::CannotBegin { error, .. } => of_run(error),
             Self::Run(error) => of_run(error),
             Self::Trajectory {
                 source: RunError::Format(FormatError::NotATrajectory { .. }),
@@ -232,6 +232,7 @@ fn of_run(error: &RunError) -> Advice {
         | RunError::NothingToResume { .. }
         | RunError::Render(RenderError::Speed { .. })
         | RunError::Configuration(_)
+        | RunError::NotPlaced
         | RunError::Engine(EngineError::InvalidParameter { .. }) => (BAD_INPUT, None),
         _ => (FAILED, error.against_divergence().map(str::to_owned)),
     }

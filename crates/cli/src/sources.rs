@@ -87,33 +87,35 @@ pub(crate) fn known_presets() -> String {
 /// Keys that say how many grains there are.
 const NUMBER_KEYS: [&str; 3] = ["number", "volume_fraction", "number_density"];
 
-/// Puts the place where the number of grains is given beside the error that they do not fit.
+/// Puts the place where a key is given beside the error that a run cannot begin with it: more grains than fit, or grains that
+/// only a program can place.
 pub(crate) fn locate(error: RunError, arguments: &ConfigurationArguments) -> Failure {
-    if !matches!(
-        error,
-        RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. })
-    ) {
-        return error.into();
-    }
-    let is_number = |text: &&String| {
-        let key = text.trim_start().strip_prefix("grains.");
-        key.is_some_and(|key| NUMBER_KEYS.iter().any(|known| key.starts_with(known)))
+    let (table, keys): (&str, &[&str]) = match error {
+        RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }) => {
+            ("grains.", &NUMBER_KEYS)
+        }
+        RunError::NotPlaced => ("initial.", &["state"]),
+        _ => return error.into(),
     };
-    let of_override = arguments.overrides.iter().rfind(is_number);
+    let is_one = |text: &&String| {
+        let key = text.trim_start().strip_prefix(table);
+        key.is_some_and(|key| keys.iter().any(|known| key.starts_with(known)))
+    };
+    let of_override = arguments.overrides.iter().rfind(is_one);
     let place = of_override.map(|text| format!("--set {text}"));
     let place = place.or_else(|| {
         let path = arguments.file.as_ref()?;
         let text = text_of(path).ok()?;
         let (index, line) = text.lines().enumerate().find(|(_, line)| {
             let line = line.trim_start();
-            let line = line.strip_prefix("grains.").unwrap_or(line);
+            let line = line.strip_prefix(table).unwrap_or(line);
             let key = line.split_once('=').map(|(key, _)| key.trim_end());
-            key.is_some_and(|key| NUMBER_KEYS.contains(&key))
+            key.is_some_and(|key| keys.contains(&key))
         })?;
         Some(format!("{}:{}: {}", path.display(), index + 1, line.trim()))
     });
     match place {
-        Some(place) => Failure::DoesNotFit { place, error },
+        Some(place) => Failure::CannotBegin { place, error },
         None => error.into(),
     }
 }

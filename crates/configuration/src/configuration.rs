@@ -330,7 +330,8 @@ pub struct Initial {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Run {
-    /// Length of the run in wave periods, rounded up to whole samples.
+    /// Length of the run in wave periods, rounded up to whole samples. They are those of drive.strain_rate: where a
+    /// schedule changes the rate, the wave runs more or fewer wavelengths (column period).
     #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub periods: Option<f64>,
     /// Length of the run in time, rounded up to whole samples; the only choice for a static wave.

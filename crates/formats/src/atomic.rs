@@ -8,7 +8,8 @@ use tempfile::NamedTempFile;
 
 use crate::error::FormatError;
 
-/// Ending of the temporary files. One is left behind only if the process is killed while it writes; it may be deleted.
+/// Ending of the temporary files. One is left behind only if the process is killed while it writes; it may be deleted, as
+/// [`sweep`] does.
 pub const PARTIAL_SUFFIX: &str = ".partial";
 
 /// Writes these bytes as the whole content of a file, or leaves everything as it was.
@@ -130,6 +131,17 @@ pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FormatError> {
 /// [`FormatError::Io`] where the folder cannot be opened or synchronized.
 pub fn synchronize(folder: &Path) -> Result<(), FormatError> {
     synchronize_folder(folder).map_err(FormatError::io("synchronize", folder))
+}
+
+/// Deletes the temporary files that killed programs have left in a folder where no other program writes now; what cannot be
+/// deleted stays.
+pub fn sweep(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with('.') && name.ends_with(PARTIAL_SUFFIX) {
+            drop(std::fs::remove_file(entry.path()));
+        }
+    }
 }
 
 fn folder_of(path: &Path) -> io::Result<&Path> {

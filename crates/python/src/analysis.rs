@@ -6,9 +6,10 @@ use std::ops::Deref;
 use numpy::PyReadonlyArray1;
 use peristalsis_analysis as analysis;
 use peristalsis_analysis::{
-    AfterEnd, Bootstrap, Collapse, Curve, CurvePoint, Direction, Family, Law, Scaling, Survival,
-    Transition, Uncertain,
+    AfterEnd, Bootstrap, Collapse, CollapseEstimate, Curve, CurvePoint, Direction, Family, Law,
+    Scaling, Survival, Transition, Uncertain,
 };
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
 use serde::Serialize;
@@ -163,6 +164,18 @@ pub(crate) fn fit_law(
 }
 
 #[pyfunction]
+#[pyo3(signature = (law, width, value, error, known=None))]
+pub(crate) fn fit_law_to_nearest(
+    law: Named<Law>,
+    width: Column,
+    value: Column,
+    error: Column,
+    known: Option<(f64, f64)>,
+) -> Answer {
+    answer(|| analysis::fit_law_to_nearest(law.0, &width, &value, &error, known.map(uncertain)))
+}
+
+#[pyfunction]
 pub(crate) fn fit_law_to_runs(law: Named<Law>, family: Named<Family>, table: RunTable) -> Answer {
     let (width, runs) = table;
     answer(|| analysis::fit_law_to_runs(law.0, family.0, &width, &runs.0))
@@ -186,6 +199,11 @@ pub(crate) fn compare_laws(
 ) -> Answer {
     let (width, runs) = table;
     answer(|| analysis::compare_laws(&laws.0, family.0, &width, &runs.0))
+}
+
+#[pyfunction]
+pub(crate) fn compare_laws_with_scatter(laws: Named<Vec<Law>>, table: RunTable) -> Answer {
+    answer(|| analysis::compare_laws_with_scatter(&laws.0, &table.0, &table.1.0))
 }
 
 #[pyfunction]
@@ -223,6 +241,21 @@ pub(crate) fn dip_test(values: Column, resamples: usize, seed: u64) -> Answer {
 #[pyfunction]
 pub(crate) fn two_peaks(values: Column) -> Answer {
     answer(|| analysis::two_peaks(&values))
+}
+
+#[pyfunction]
+pub(crate) fn fit_inverse_line(width: Column, value: Column, error: Column) -> Answer {
+    answer(|| analysis::fit_inverse_line(&width, &value, &error))
+}
+
+#[pyfunction]
+pub(crate) fn fit_inverse_parabola(width: Column, value: Column, error: Column) -> Answer {
+    answer(|| analysis::fit_inverse_parabola(&width, &value, &error))
+}
+
+#[pyfunction]
+pub(crate) fn fit_line_to_scatter(x: Column, y: Column) -> Answer {
+    answer(|| analysis::fit_line_to_scatter(&x, &y))
 }
 
 #[pyfunction]
@@ -302,6 +335,21 @@ impl<'py> FromPyObject<'_, 'py> for Scheme<'py> {
     }
 }
 
+/// What a scaling of the caller's answered.
+fn three_numbers(answer: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
+    let numbers = answer.try_iter().and_then(|items| {
+        let numbers = items.map(|item| item?.extract());
+        numbers.collect::<PyResult<Vec<f64>>>()
+    });
+    let three = numbers.ok().and_then(|found| found.try_into().ok());
+    three.ok_or_else(|| {
+        let reason = format!(
+            "the scaling is called for one point at a time and answers three numbers (x, y, error), not {answer}"
+        );
+        PyTypeError::new_err(reason)
+    })
+}
+
 impl Scheme<'_> {
     /// Refuses another number of parameters than a scaling of ours has, and of known places than there are curves.
     fn check(&self, parameters: usize, curves: usize) -> PyResult<()> {
@@ -341,12 +389,10 @@ impl Scheme<'_> {
                 let CurvePoint { x, y, error } = point;
                 let arguments = (parameters.to_vec(), parameter, x, y, error);
                 // A search asks often and long: Ctrl-C is heard on the way.
-                let scaled = function
-                    .py()
-                    .check_signals()
-                    .and_then(|()| function.call1(arguments)?.extract::<(f64, f64, f64)>());
-                match scaled {
-                    Ok((x, y, error)) => CurvePoint { x, y, error },
+                let called = function.py().check_signals();
+                let called = called.and_then(|()| function.call1(arguments));
+                match called.and_then(|answer| three_numbers(&answer)) {
+                    Ok([x, y, error]) => CurvePoint { x, y, error },
                     Err(error) => {
                         *raised.borrow_mut() = Some(error);
                         nowhere
@@ -378,6 +424,17 @@ pub(crate) struct Search {
     least_overlap: f64,
     correction: Option<f64>,
     leave_one_out: bool,
+    /// Place, value and error of parameters known from elsewhere.
+    known: Vec<(usize, f64, f64)>,
+}
+
+impl Search {
+    fn known(&self) -> Vec<(usize, Uncertain)> {
+        let known = self.known.iter();
+        known
+            .map(|&(place, value, error)| (place, Uncertain::normal(value, error)))
+            .collect()
+    }
 }
 
 /// Best parameters with errors: (estimate, parameters with one curve left out in turn).
@@ -401,7 +458,8 @@ pub(crate) fn fit_collapse<'py>(
     let work = || {
         let (start, steps) = (&search.start, &search.steps);
         let (starts, seed, correction) = (search.starts, search.seed, search.correction);
-        let found = collapse.estimate(start, steps, starts, seed, correction)?;
+        let known = search.known();
+        let found = collapse.estimate_knowing(&known, start, steps, starts, seed, correction)?;
         let values = found.parameters.iter().map(|parameter| parameter.value);
         let left_out = if search.leave_one_out {
             let best: Vec<f64> = values.collect();
@@ -412,6 +470,30 @@ pub(crate) fn fit_collapse<'py>(
         Ok((found, left_out))
     };
     let outcome = work();
+    let found = scheme.outcome(outcome)?;
+    Ok(pythonize(py, &found)?.unbind())
+}
+
+/// Whether the parameters that were found are those claimed, by their places.
+#[pyfunction]
+pub(crate) fn test_collapse<'py>(
+    py: Python<'py>,
+    measured: Vec<Measured>,
+    scheme: Scheme<'py>,
+    search: Search,
+    found: Named<CollapseEstimate>,
+    claimed: Vec<(usize, f64)>,
+) -> Answer {
+    let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
+    scheme.check(search.steps.len(), curves.len())?;
+    let collapse = Collapse {
+        curves: &curves,
+        transform: &|parameters, curve, parameter, point| {
+            scheme.apply(parameters, curve, parameter, point)
+        },
+        least_overlap: search.least_overlap,
+    };
+    let outcome = collapse.joint_test(&search.known(), &found.0, &search.steps, &claimed);
     let found = scheme.outcome(outcome)?;
     Ok(pythonize(py, &found)?.unbind())
 }

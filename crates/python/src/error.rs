@@ -117,6 +117,7 @@ pub(crate) fn of_run(error: RunError) -> PyErr {
         RunError::Configuration(_)
         | RunError::Steering { .. }
         | RunError::Placement { .. }
+        | RunError::NotPlaced
         | RunError::Engine(EngineError::InvalidParameter { .. }) => {
             ConfigurationError::new_err(text)
         }
@@ -132,7 +133,7 @@ pub(crate) fn of_run(error: RunError) -> PyErr {
         }
         RunError::State { .. } => SnapshotError::new_err(text),
         RunError::NothingToResume { .. } => PyFileNotFoundError::new_err(text),
-        RunError::Folder { .. } => PyOSError::new_err(text),
+        RunError::Folder { .. } | RunError::AtWork { .. } => PyOSError::new_err(text),
         RunError::Trajectory { help, .. } => {
             PyValueError::new_err(format!("{text}\n  help: {help}"))
         }

@@ -12,7 +12,7 @@ use peristalsis_engine::{Bodies, Instructions, processors};
 use peristalsis_observe::View;
 use peristalsis_run::{
     PlacedGrains, RunError, RunFolder, Status, Summary, profile_table, read_state,
-    timeseries_table, waves_table,
+    timeseries_table, waves_table, write_state,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -148,6 +148,11 @@ impl Run {
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let bytes = self.look(py, |run| run.to_snapshot()).map_err(of_run)?;
         Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// Writes configuration and state to a file, whole or not at all.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        self.look(py, |run| write_state(run, &path)).map_err(of_run)
     }
 
     /// A run that goes on by itself from here.

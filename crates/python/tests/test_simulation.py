@@ -330,7 +330,7 @@ def test_a_run_as_a_function_goes_through_a_pool() -> None:
 
 def test_nonsense_lengths_are_refused(small: Simulation) -> None:
     for wrong in ({"periods": -1}, {"periods": float("nan")}, {"duration": float("inf")}):
-        with pytest.raises(ValueError, match="from 0 on"):
+        with pytest.raises(ValueError, match="above 0|finite number"):
             small.run(**wrong)
     with pytest.raises(TypeError):
         small.run(periods=1, duration=1)

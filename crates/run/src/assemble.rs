@@ -37,11 +37,7 @@ pub(crate) fn assemble_unless(
     stop: &dyn Fn() -> bool,
 ) -> Result<(Simulation, PackingReport), RunError> {
     if configuration.initial.state == InitialState::Placed {
-        let reason = "initial.state is \"placed\": a caller of the library has put the grains somewhere, which a \
-                      configuration does not say; go on from a checkpoint of that run, or take \"rest\" or \"jammed\"";
-        return Err(RunError::Placement {
-            reason: reason.to_owned(),
-        });
+        return Err(RunError::NotPlaced);
     }
     check_number(configuration)?;
     check_memory(configuration)?;
@@ -288,6 +284,15 @@ fn schedule(
     let knots = knots.map(|(periods, value)| (periods * period, value));
     Schedule::through(knots.collect())
         .expect("a validated schedule has finite knots in order of time")
+}
+
+/// Wavelengths that the wave runs in the run, where a schedule changes its rate: the run's periods are those of
+/// drive.strain_rate, which it then does not run.
+pub fn scheduled_wavelengths(configuration: &Configuration) -> Option<f64> {
+    let rate = ScheduledParameter::StrainRate;
+    configuration.drive.schedule(rate)?;
+    let rate = schedule(configuration, rate, configuration.drive.strain_rate);
+    Some(rate.integral(configuration.run.duration))
 }
 
 /// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without

@@ -71,6 +71,12 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
+    /// Grains that a caller of the library put somewhere, which a configuration does not say.
+    #[error(
+        "initial.state is \"placed\": a caller of the library has put the grains somewhere, which a configuration does not \
+         say; go on from a checkpoint of that run, or take \"rest\" or \"jammed\""
+    )]
+    NotPlaced,
     /// A run cannot be driven like that.
     #[error("cannot drive the run so: {reason}")]
     Steering {

@@ -8,7 +8,7 @@ use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use crate::RunError;
-use crate::assemble::{check_number, moving_spheres, newtonian_reference};
+use crate::assemble::{check_number, moving_spheres, newtonian_reference, scheduled_wavelengths};
 use crate::run::Run;
 use crate::si::SiEstimate;
 use crate::trajectory::{self, TrajectoryEstimate, TrajectoryPlan, TrajectoryRequest};
@@ -50,6 +50,9 @@ pub struct Estimate {
     pub period: Option<f64>,
     /// Length of the run in periods.
     pub periods: Option<f64>,
+    /// Wavelengths that the wave runs in them, where a schedule changes its rate.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub wavelengths: Option<f64>,
     /// Length of the run \[t\].
     pub duration: f64,
     /// Step taken \[t\].
@@ -119,6 +122,7 @@ pub fn estimate(
         length: configuration.tube.length(),
         period: configuration.drive.period(),
         periods: configuration.run.periods,
+        wavelengths: scheduled_wavelengths(configuration),
         duration: configuration.run.duration,
         time_step: configuration.run.time_step,
         steps: configuration.run.steps(),

@@ -163,7 +163,8 @@ impl RunFolder {
     }
 
     /// Takes the folder for work on its run, until this value is dropped or the program ends; other programs may still read
-    /// it. Where the file system knows no locks, nothing is taken. New folders are taken when they are made.
+    /// it. Where the file system knows no locks, nothing is taken. New folders are taken when they are made. What a killed
+    /// program left half-written goes.
     ///
     /// # Errors
     /// [`RunError::AtWork`] where another program, or another value of this one, has it.
@@ -175,6 +176,7 @@ impl RunFolder {
         match opened.try_lock() {
             Err(TryLockError::WouldBlock) => Err(RunError::AtWork { folder: self.path }),
             _ => {
+                atomic::sweep(&self.path);
                 self.lock = Some(Arc::new(opened));
                 Ok(self)
             }
@@ -314,6 +316,22 @@ pub fn read_state(path: &Path) -> Result<Run, RunError> {
         let source = Box::new(source);
         RunError::State { path, source }
     })
+}
+
+/// Writes the state of a run to a file, whole or not at all.
+///
+/// # Errors
+/// [`RunError::Format`] where it cannot be written, [`RunError::AtWork`] where it is that of a run on which another program
+/// works; an older file stays.
+pub fn write_state(run: &Run, path: &Path) -> Result<(), RunError> {
+    let folder = path.parent().map(RunFolder::named);
+    let is_of = |folder: &RunFolder| {
+        path.file_name().is_some_and(|name| name == STATE) && folder.file(CONFIGURATION).exists()
+    };
+    let held = folder.filter(is_of).map(RunFolder::claim).transpose()?;
+    let written = run.write_checkpoint(path);
+    drop(held);
+    written
 }
 
 /// Makes the first free one of the folders `inside/stem-1`, `inside/stem-2`, ...: no two programs get the same.

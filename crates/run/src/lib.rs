@@ -25,10 +25,10 @@ mod tables;
 mod trajectory;
 mod warnings;
 
-pub use assemble::{PlacedGrains, assemble, walls};
+pub use assemble::{PlacedGrains, assemble, scheduled_wavelengths, walls};
 pub use error::RunError;
 pub use estimate::{Estimate, estimate};
-pub use folder::{RunFolder, Written, next_folder, read_state};
+pub use folder::{RunFolder, Written, next_folder, read_state, write_state};
 pub use pace::Pace;
 pub use peristalsis_configuration::Configuration;
 pub use peristalsis_figures::{Drawing, Paper};

@@ -42,7 +42,14 @@ fn in_words(estimate: &Estimate) -> String {
             (Some(period), Some(periods)) => {
                 let [duration, periods, period] = [duration, periods, period].map(rounded);
                 let periods = counted(periods, "period");
-                format!("time              {duration} t: {periods} of {period} t")
+                let led = estimate.wavelengths.map(|wavelengths| {
+                    format!(
+                        " as drive.strain_rate has them; led by drive.schedule, the wave runs {} wavelengths",
+                        rounded(wavelengths)
+                    )
+                });
+                let led = led.unwrap_or_default();
+                format!("time              {duration} t: {periods} of {period} t{led}")
             }
             _ => format!(
                 "time              {} t, the wave stands still",

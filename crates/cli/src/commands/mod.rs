@@ -121,6 +121,14 @@ fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// A number that reads 0 with so many decimals as 0, which has no sign.
+pub(crate) fn unsigned_zero(value: f64, decimals: i32) -> f64 {
+    match value.abs() < 0.5 * 0.1_f64.powi(decimals) {
+        true => 0.0,
+        false => value,
+    }
+}
+
 /// A number with at most four significant digits, and none that are zeros at the end.
 fn rounded(value: f64) -> String {
     let text = significant(value, 4);
@@ -132,7 +140,7 @@ fn rounded(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{counted, rounded, significant};
+    use super::{counted, rounded, significant, unsigned_zero};
 
     #[test]
     fn one_is_no_plural() {
@@ -142,6 +150,13 @@ mod tests {
             [0, 2].map(|number| counted(number, "run")),
             ["0 runs", "2 runs"]
         );
+    }
+
+    #[test]
+    fn a_number_that_reads_zero_has_no_sign() {
+        let texts = [-3e-5, -0.0, -6e-5].map(|it| format!("{:.4}", unsigned_zero(it, 4)));
+        assert_eq!(texts, ["0.0000", "0.0000", "-0.0001"]);
+        assert_eq!(format!("{:+.3}", unsigned_zero(-4e-4, 3)), "+0.000");
     }
 
     #[test]

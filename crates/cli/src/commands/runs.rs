@@ -85,6 +85,16 @@ fn entry(path: &Path) -> Value {
     };
     let of = |key: &str| summary.as_ref().map_or(Value::Null, |all| all[key].clone());
     let warnings = of("warnings").as_array().map(Vec::len);
+    let status = status(&configuration, &summary);
+    // Of a run that goes on, or was killed, the state that it saved last says how far it was then.
+    let time = match status.as_str() {
+        UNFINISHED | "interrupted" => reached(path).map_or(of("time"), Value::from),
+        _ => of("time"),
+    };
+    let periods = time
+        .as_f64()
+        .filter(|_| configuration.run.periods.is_some())
+        .map(|time| time * configuration.drive.strain_rate);
     let (drive, amplitude) = amplitude(&configuration);
     json!({
         "folder": folder,
@@ -93,11 +103,11 @@ fn entry(path: &Path) -> Value {
         "strain_rate": configuration.drive.strain_rate,
         "drive": drive,
         "amplitude": amplitude,
-        "periods": of("periods"),
+        "periods": periods,
         "periods_asked": configuration.run.periods,
-        "time": of("time"),
+        "time": time,
         "duration_asked": configuration.run.duration,
-        "status": status(&configuration, &summary),
+        "status": status,
         "flow_rate_ratio": of("flow_rate_ratio"),
         "flow_rate_ratio_error": of("flow_rate_ratio_error"),
         "transition_time": of("transition_time"),
@@ -115,14 +125,23 @@ fn amplitude(configuration: &Configuration) -> (&'static str, f64) {
     }
 }
 
-/// How a run ended; "unfinished" where it goes on, was killed, or is to be longer than it is.
+/// The status of a run that goes on, was killed, or is to be longer than it is.
+const UNFINISHED: &str = "unfinished";
+
+/// Time of the state that a run saved last \[t\].
+fn reached(path: &Path) -> Option<f64> {
+    let run = RunFolder::named(path).state().ok()?;
+    Some(run.simulation().time())
+}
+
+/// How a run ended; [`UNFINISHED`] where it goes on, was killed, or is to be longer than it is.
 fn status(configuration: &Configuration, summary: &Option<Value>) -> String {
     let Some(summary) = summary else {
-        return "unfinished".to_owned();
+        return UNFINISHED.to_owned();
     };
     let steps = summary["steps"].as_u64().unwrap_or(0);
     match summary["status"].as_str() {
-        Some("complete") if steps < configuration.run.steps() => "unfinished".to_owned(),
+        Some("complete") if steps < configuration.run.steps() => UNFINISHED.to_owned(),
         Some(status) => status.to_owned(),
         None => "unreadable".to_owned(),
     }

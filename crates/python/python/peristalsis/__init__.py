@@ -47,7 +47,7 @@ def __getattr__(name: str) -> ModuleType:
 
 
 def __dir__() -> list[str]:
-    return [*globals(), "plot"]
+    return sorted([*__all__, "plot"])
 
 
 __all__ = [

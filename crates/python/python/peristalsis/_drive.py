@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ._given import number
 from ._state import State
 
 
@@ -32,7 +33,7 @@ class Drive(State):
 
     @width.setter
     def width(self, value: float) -> None:
-        self._run.drive_to("width", float(value), 0.0)
+        self._run.drive_to("width", number("width", value), 0.0)
 
     @property
     def force_amplitude(self) -> float:
@@ -49,11 +50,12 @@ class Drive(State):
 
     @force_amplitude.setter
     def force_amplitude(self, value: float) -> None:
-        self._run.drive_to("force_amplitude", float(value), 0.0)
+        self._run.drive_to("force_amplitude", number("force_amplitude", value), 0.0)
 
     @property
     def strain_rate(self) -> float:
-        """c/lambda [1/t]. Samples keep their distance in time when it changes.
+        """c/lambda [1/t]. Samples keep their distance in time when it changes, and `configuration` counts its periods
+        (``run.periods``, ``drive.schedule``) in those of the first rate; `period` counts wavelengths.
 
         Examples
         --------
@@ -66,4 +68,4 @@ class Drive(State):
 
     @strain_rate.setter
     def strain_rate(self, value: float) -> None:
-        self._run.drive_to("strain_rate", float(value), 0.0)
+        self._run.drive_to("strain_rate", number("strain_rate", value), 0.0)

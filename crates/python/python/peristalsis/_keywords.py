@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import operator
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from typing import Any
@@ -78,8 +79,14 @@ def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> d
 
 def _plain(key: str, value: Any) -> Any:
     """A value that TOML can hold: of NumPy's random numbers a seed that is drawn, so that the configuration has it."""
-    if key == "run.seed" and isinstance(value, np.random.Generator):
-        return int(value.integers(_MOST, endpoint=True))
+    if key == "run.seed":
+        if isinstance(value, np.random.Generator):
+            return int(value.integers(_MOST, endpoint=True))
+        if isinstance(value, bool) or not hasattr(value, "__index__") or not 0 <= operator.index(value) <= _MOST:
+            raise ConfigurationError(
+                f"run.seed = {value!r} is no seed\n"
+                "  help: a whole number from 0 to 2**63 - 1, or a numpy.random.Generator, of which one is drawn"
+            )
     if isinstance(value, int) and not isinstance(value, bool) and not -_MOST <= value <= _MOST:
         raise ConfigurationError(f"{key} = {value} is beyond reach\n  help: whole numbers go up to 2**63 - 1 = {_MOST}")
     return value

@@ -167,7 +167,9 @@ def ramp(
         for number, (_, value) in enumerate(course):
             setattr(simulation, parameter, value)
             # A doubt of one level may be none of the whole, such as a threshold that is crossed later.
-            simulation._step(simulation._steps_of(periods, None))
+            steps = simulation._steps_of(periods, None)
+            # To the end of a sample, with which the configuration of the whole course ends, too.
+            simulation._step(steps + -(simulation.steps + steps) % simulation._run.steps_per_sample)
             found.append(_late(simulation, periods, settle))
             display.update(number + 1)
     tell(simulation.warnings, simulation._told)

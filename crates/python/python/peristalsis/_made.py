@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._core import Configuration, ConfigurationError
+from ._given import numbers, of_kind
 from ._keywords import overrides as joined
 from ._output import Output
 from ._warnings import kind, tell
@@ -33,6 +34,7 @@ class Made(Output):
     _told: set[str]
 
     def __init__(self, configuration: Configuration) -> None:
+        of_kind("configuration", configuration, Configuration, "a peristalsis.Configuration (presets: Simulation.preset)")
         self._begin(_core.Run(configuration))
         tell(self.warnings, self._told)
 
@@ -240,8 +242,9 @@ class Made(Output):
         >>> contacts["i"].tolist(), contacts["j"].tolist(), contacts["overlap"].round(6).tolist()
         ([0], [1], [0.1])
         """
-        places = np.array(positions, dtype=float)
-        speeds = np.zeros_like(places) if velocities is None else np.array(velocities, dtype=float)
+        of_kind("configuration", configuration, Configuration, "a peristalsis.Configuration")
+        places = numbers("positions", positions)
+        speeds = np.zeros_like(places) if velocities is None else numbers("velocities", velocities)
         if places.ndim != 2 or places.shape[1] != 3 or speeds.shape != places.shape:
             raise ConfigurationError(
                 f"positions and velocities are arrays of shape (N, 3), not {places.shape} and {speeds.shape}"
@@ -249,10 +252,12 @@ class Made(Output):
         least, most = configuration["grains.diameter_min"], configuration["grains.diameter_max"]
         if diameters is None and least != most:
             raise ConfigurationError(f"grains of diameters from {least} to {most}: give diameters, one for each grain")
-        sizes = np.asarray(least if diameters is None else diameters, dtype=float)
+        sizes = numbers("diameters", least if diameters is None else diameters)
         if sizes.shape not in ((), (len(places),)):
             raise ConfigurationError(f"diameters is one number, or an array of shape ({len(places)},), not {sizes.shape}")
         sizes = np.array(np.broadcast_to(sizes, len(places)))
+        if (wrong := np.flatnonzero(~((sizes > 0) & np.isfinite(sizes)))).size:
+            raise ConfigurationError(f"diameters[{wrong[0]}] = {sizes[wrong[0]]} is no diameter: each is a number above 0")
         keys: dict[str, Any] = {"grains.number": len(places), "initial.state": "placed"}
         if len(sizes):
             keys |= {"grains.diameter_min": float(sizes.min()), "grains.diameter_max": float(sizes.max())}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
@@ -26,7 +25,7 @@ class Output(Drive):
 
     def add_writer(
         self,
-        path: str | os.PathLike[str],
+        path: str | os.PathLike[str] | Writer,
         every: float | str | None = None,
         at: float | str | Sequence[float | str] | None = None,
         *,
@@ -37,7 +36,7 @@ class Output(Drive):
         Parameters
         ----------
         path, every, at, overwrite
-            As of `Writer`.
+            As of `Writer`; or a `Writer` alone, instead of all of them.
 
         Returns
         -------
@@ -62,7 +61,9 @@ class Output(Drive):
         ...     writer.frames
         3
         """
-        writer = Writer(path, every, at, overwrite=overwrite)
+        if isinstance(path, Writer) and (every, at, overwrite) != (None, None, False):
+            raise TypeError("add_writer takes a Writer, or what one is made of, not both")
+        writer = path if isinstance(path, Writer) else Writer(path, every, at, overwrite=overwrite)
         writer._begin(cast("Simulation", self))
         self._writers.append(writer)
         return writer
@@ -203,7 +204,7 @@ class Output(Drive):
         Raises
         ------
         OSError
-            Where it cannot be written; an older file stays.
+            Where it cannot be written, or is the state of a run that another program works on; an older file stays.
 
         Examples
         --------
@@ -216,13 +217,4 @@ class Output(Drive):
         ...     peristalsis.Simulation.load(Path(folder) / "now.checkpoint").steps
         0
         """
-        path = Path(path)
-        unfinished = path.with_name(f"{path.name}.{os.getpid()}-{threading.get_ident()}.tmp")
-        try:
-            with unfinished.open("wb") as file:
-                file.write(self._run.to_bytes())
-                file.flush()
-                os.fsync(file.fileno())
-            unfinished.replace(path)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        self._run.save(Path(path))

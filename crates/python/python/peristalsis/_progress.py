@@ -45,7 +45,7 @@ class Progress:
         if now - self._last < (_LOG if self._shown == "logging" else _LINE) and done < self._steps:
             return
         self._last = now
-        state = f"period {self._simulation.period:.1f}, J/Jmax {self._simulation.flow_rate_ratio:.3f}"
+        state = f"period {self._simulation.period:.1f}, J/Jmax {round(self._simulation.flow_rate_ratio, 3) + 0.0:.3f}"
         left = (now - self._begin) * (self._steps - done) / max(done, 1)
         if self._bar is not None:
             self._bar.set_postfix_str(state, refresh=False)

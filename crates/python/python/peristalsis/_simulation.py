@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import html
+import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ._core import ConfigurationError
+from ._given import number, positive, whole
 from ._loop import Loop, ramp
 from ._made import Made
 from ._progress import Progress, Shown
-from ._warnings import tell
-from ._writers import Trigger, Writer, triggers, whole
+from ._warnings import PeristalsisWarning, outside, tell
+from ._writers import Trigger, Writer, listed, triggers
 
 if TYPE_CHECKING:
     from ._loop import _Parameter
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Seconds from one look of the interpreter at a running simulation to the next: how long Ctrl-C may take.
 _PATIENCE = 0.05
+#: Steps that a run has at most.
+_MOST_STEPS = 1e12
 #: Parameters of the drive, which may change during a run.
 CHANGEABLE = ("width", "force_amplitude", "strain_rate")
 
@@ -102,7 +106,9 @@ class Simulation(Made):
             Where a grain moves too far in one step; the state is that of the step that failed, and the simulation goes no
             further.
         ConfigurationError
-            For a length shorter than half a step.
+            For a length shorter than half a step, or of more steps than any run can have.
+        ValueError
+            For a length that is not above 0.
 
         Examples
         --------
@@ -123,13 +129,17 @@ class Simulation(Made):
         if periods is not None:
             if not self.strain_rate:
                 raise ConfigurationError("a static wave has no period: give run a duration")
-            duration = periods / self.strain_rate
+            duration = positive("periods", periods) / self.strain_rate
         if duration is None:
+            if self.steps >= configuration.steps:
+                told = "the run is complete, and nothing was done: give run periods or duration to go on"
+                warnings.warn(told, PeristalsisWarning, stacklevel=outside())
             return max(0, configuration.steps - self.steps)
-        if not 0 <= duration < float("inf"):
-            raise ValueError("a simulation advances by a time from 0 on")
-        steps = round(duration / configuration.time_step)
-        if duration > 0 and steps == 0:
+        length = positive("duration", duration) / configuration.time_step
+        if length > _MOST_STEPS:
+            raise ConfigurationError(f"a run of {length:.3g} steps is beyond reach: at most {_MOST_STEPS:.0e}")
+        steps = round(length)
+        if steps == 0:
             raise ConfigurationError(
                 f"a run of {duration:.4g} t is shorter than half a step of {configuration.time_step:.4g} t\n"
                 "  help: take a shorter run.time_step, or a longer run"
@@ -186,8 +196,8 @@ class Simulation(Made):
         if not self._running.acquire(blocking=False):
             raise RuntimeError("this simulation is running already")
         try:
-            self._run.compute_with(None if threads is None else int(threads))
-            files = list(dict.fromkeys([*self._writers, *writers]))
+            self._run.compute_with(None if threads is None else whole("threads", threads, 1))
+            files = list(dict.fromkeys([*self._writers, *listed(writers)]))
             called: list[Trigger | Writer] = [*triggers(callback, each, self.steps), *files]
             for writer in files:
                 writer._begin(self)
@@ -233,7 +243,8 @@ class Simulation(Made):
         start, stop : float
             First and last level, in the unit of the parameter; it jumps to `start` at once.
         periods : float
-            Periods of one way, shared equally by its levels; of the wave as it is driven at each. At least two a level.
+            Periods of one way, shared equally by its levels, each of which ends with a sample; of the wave as it is driven
+            at each. At least two a level.
         levels : int
             Values from `start` to `stop`, both included, evenly spaced.
         back : bool
@@ -268,6 +279,8 @@ class Simulation(Made):
             raise ConfigurationError(f"{parameter} cannot be led; {', '.join(CHANGEABLE)} can")
         self._drive(parameter)
         levels = whole("levels", levels, 1)
+        named = {"start": start, "stop": stop, "periods": periods, "settle": settle, "threshold": threshold}
+        start, stop, periods, settle, threshold = (number(name, value) for name, value in named.items())
         if levels == 1 and start != stop:
             raise ValueError(f"one level cannot lead from {start} to {stop}: levels is 2 at least")
         if not 0 <= settle < 1:
@@ -289,7 +302,7 @@ class Simulation(Made):
             "grains": f"{configuration.grains} in {configuration.waves} waves, volume fraction {configuration.volume_fraction:.3g}",
             "drive": ", ".join(drive),
             "time": f"{self.time:.6g} ({self.period:.4g} periods, {self.steps} steps)",
-            "J/Jmax": f"{self.flow_rate_ratio:.4g}",
+            "J/Jmax": f"{self.flow_rate_ratio + 0.0:.4g}",
             "transition": "none yet" if transition is None else f"at {transition:.5g}",
             "seed": str(configuration.seed),
             "escaped": str(self.escaped),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ._given import of_kind
 from ._simulation import Simulation
 from ._style import DOUBLE_COLUMN, GREY, drawing, title
 
@@ -57,6 +58,7 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     >>> plot.snapshot(sim, waves=2).get_xlim() == (0.0, 20.0)
     True
     """
+    of_kind("simulation", simulation, Simulation, "a peristalsis.Simulation")
     all_waves = simulation.configuration.waves
     if waves < 1 or not 0 <= first < all_waves:
         raise ValueError(f"a snapshot shows 1 or more waves, from one of 0 to {all_waves - 1} on")

@@ -65,10 +65,10 @@ def tell(doubts: Iterable[KeyedWarning], told: set[str]) -> None:
     for doubt in doubts:
         if kind(doubt) not in told:
             told.add(kind(doubt))
-            warnings.warn(str(doubt), PeristalsisWarning, stacklevel=_outside())
+            warnings.warn(str(doubt), PeristalsisWarning, stacklevel=outside())
 
 
-def _outside() -> int:
+def outside() -> int:
     """How many calls above `warnings.warn` the caller of the package is."""
     level, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:

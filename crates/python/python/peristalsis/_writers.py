@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import operator
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from . import _core
+from ._given import whole
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
@@ -41,23 +41,20 @@ def triggers(callback: _Callbacks | None, every: int, now: int) -> list[Trigger]
     if callable(callback):
         return [Trigger(callback, now, every)]
     found = []
-    for item in callback:
-        function, steps = item if isinstance(item, tuple) else (item, every)
-        if not callable(function):
-            raise TypeError("a callback is a function, or a pair of a function and its every")
-        found.append(Trigger(function, now, whole("every", steps, 1)))
+    for item in callback if isinstance(callback, Iterable) else [callback]:
+        function, *steps = item if isinstance(item, tuple) else (item,)
+        if not callable(function) or len(steps) > 1:
+            raise TypeError(f"callback is a function, or a list of functions and of pairs (function, every), not {callback!r}")
+        found.append(Trigger(function, now, whole("every", steps[0] if steps else every, 1)))
     return found
 
 
-def whole(name: str, value: Any, least: int) -> int:
-    """A whole number from `least` on."""
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise TypeError(f"{name} is a whole number of steps, not {value!r}") from None
-    if number < least:
-        raise ValueError(f"{name} is {least} or more steps, not {number}")
-    return number
+def listed(writers: Iterable[Writer]) -> list[Writer]:
+    """The writers given, each once."""
+    found = [writers] if isinstance(writers, Writer) or not isinstance(writers, Iterable) else list(writers)
+    if wrong := [it for it in found if not isinstance(it, Writer)]:
+        raise TypeError(f"writers is a list of peristalsis.Writer, such as [Writer('run.gsd', every=0.5)], not of {wrong[0]!r}")
+    return list(dict.fromkeys(found))
 
 
 class Writer:
@@ -83,7 +80,8 @@ class Writer:
     Raises
     ------
     ValueError
-        For an ending of no known format, or an interval shorter than a step.
+        For an ending of no known format, spans and instants that are none, or, when the first frame is due, an interval
+        shorter than a step.
     FileExistsError
         Where there is such a file already, when the first frame is due.
 
@@ -108,10 +106,18 @@ class Writer:
         *,
         overwrite: bool = False,
     ) -> None:
+        if not isinstance(path, (str, os.PathLike)):
+            raise TypeError(f"path is the name of a file, not {path!r}")
         self.path: Path = Path(path)
         _core.check_frame_format(self.path)
         self._every = 0.1 if every is None and at is None else every
         self._at = [] if at is None else [at] if isinstance(at, str) or not isinstance(at, Iterable) else list(at)
+        if self._every is not None and not span("every", self._every)[0]:
+            raise ValueError(f"every = {every!r} is no time from one frame to the next")
+        if self._every is None and not self._at:
+            raise ValueError("at is empty: it names no instant of a frame")
+        for instant in self._at:
+            span("at", instant)
         self._overwrite = overwrite
         self._simulation: Simulation | None = None
         self._frames: _core.Frames | None = None
@@ -177,17 +183,23 @@ class Writer:
         return f"<peristalsis.Writer: {self.path}, {self.frames} frames>"
 
 
-def steps_in(simulation: Simulation, name: str, span: float | str) -> int:
-    """The steps of a span of time: periods of the wave as it is driven now, or as text with a ``t`` in time."""
+def span(name: str, given: float | str) -> tuple[float, bool]:
+    """A span of time as a number, and whether it is in time; otherwise it is in periods."""
     try:
-        is_time = isinstance(span, str) and span.strip().endswith("t")
-        number = float(span.strip().removesuffix("t") if isinstance(span, str) else span)
+        is_time = isinstance(given, str) and given.strip().endswith("t")
+        number = float(given.strip().removesuffix("t") if isinstance(given, str) else given)
     except (TypeError, ValueError):
         number = math.nan
     if not 0 <= number < math.inf:
-        raise ValueError(f'{name} = {span!r} is no span of time: a number of periods, such as 0.1, or "2.5t" in time')
+        raise ValueError(f'{name} = {given!r} is no span of time: a number of periods, such as 0.1, or "2.5t" in time')
+    return number, is_time
+
+
+def steps_in(simulation: Simulation, name: str, given: float | str) -> int:
+    """The steps of a span of time: periods of the wave as it is driven now, or as text with a ``t`` in time."""
+    number, is_time = span(name, given)
     if not is_time:
         if not simulation.strain_rate:
-            raise ValueError(f'{name} = {span!r}: a static wave has no period; give a time, such as "2.5t"')
+            raise ValueError(f'{name} = {given!r}: a static wave has no period; give a time, such as "2.5t"')
         number /= simulation.strain_rate
     return round(number / simulation.configuration.time_step)

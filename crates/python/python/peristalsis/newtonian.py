@@ -14,6 +14,10 @@ from ._core import Newtonian, trapping_threshold
 
 __all__ = ["Newtonian", "field", "flow_rate_ratio", "trapping_threshold"]
 
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
 Array = npt.NDArray[np.float64]
 
 

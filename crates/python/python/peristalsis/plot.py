@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import newtonian
+from ._given import of_kind
 from ._simulation import Simulation
 from ._snapshot import snapshot
 from ._style import ALONG, COLOURS, DOUBLE_COLUMN, GREY, SINGLE_COLUMN, STYLE, axes, drawing, title
@@ -37,6 +38,10 @@ __all__ = [
     "stationary_flow",
     "survival",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
 
 Array = npt.NDArray[np.float64]
 
@@ -101,6 +106,7 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
     >>> plot.flow(sim).get_xlabel()
     'time, $t/T$'
     """
+    of_kind("simulation", simulation, Simulation, "a peristalsis.Simulation")
     series, summary = simulation.timeseries(), simulation.summary()
     period, ratio = series["period"], series["flow_rate_ratio"]
     if not np.isfinite(ratio).any():
@@ -199,6 +205,11 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
     -------
     matplotlib.axes.Axes
 
+    Raises
+    ------
+    ValueError
+        Where there is no such column, or nothing was measured of it.
+
     Examples
     --------
     >>> from peristalsis import Simulation, plot
@@ -207,9 +218,12 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
     >>> plot.profile(sim, "axial_velocity").get_ylabel()
     'axial velocity, $v_z/c$'
     """
+    of_kind("simulation", simulation, Simulation, "a peristalsis.Simulation")
     table = simulation.profile()
     if column not in table:
         raise ValueError(f"the profile has no column {column!r}; it has {', '.join(table.column_names)}")
+    if not np.isfinite(table[column]).any():
+        raise ValueError(f"there is no {column} to draw: run the simulation first, for a period at least")
     unit = table.units[column]
     words, symbol, colour = _COLUMNS.get(column, (column.replace("_", " "), "", BLUE))
     speed = simulation.strain_rate * simulation.length / simulation.configuration.waves
@@ -327,6 +341,8 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
     >>> len(peristalsis.plot.hysteresis(sim.ramp("width", 2.4, 2.8, periods=6, levels=3)).containers)
     2
     """
+    if not (hasattr(loop, "parameter") and callable(getattr(loop, "table", None))):
+        raise TypeError(f"loop is what Simulation.ramp answered, not {loop!r}")
     table = loop.table()
     branch = np.asarray(table["branch"])
     value, ratio, error = (np.asarray(table[name], float) for name in ("value", "flow_rate_ratio", "flow_rate_ratio_error"))
@@ -379,6 +395,7 @@ def survival(curve: Survival, ax: Axes | None = None, *, label: str | None = Non
     >>> float(plot.survival(analysis.Survival([120.0, 340.0, 800.0], [True, True, False])).get_ylim()[0])
     0.0
     """
+    of_kind("curve", curve, Survival, "a peristalsis.analysis.Survival")
     time = np.array([0.0, *(step.time for step in curve.steps), curve.watched])
     levels = [step.survival for step in curve.steps]
     value = np.array([1.0, *(level.value for level in levels)])
@@ -429,6 +446,7 @@ def collapse(
     >>> len(plot.collapse(analysis.Collapse(curves, "finite_size"), [0.5, 1.0, 0.0]).containers)
     2
     """
+    of_kind("what", what, Collapse, "a peristalsis.analysis.Collapse")
     chosen = parameters.parameters if isinstance(parameters, CollapseResult) else parameters
     labels = list(names) if names is not None else [f"{curve[0]:g}" for curve in what.curves]
     quality = what.quality(chosen)

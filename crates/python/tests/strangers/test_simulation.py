@@ -260,9 +260,9 @@ def test_copies_and_pickles_carry_all_but_the_writers(tight: Simulation, tmp_pat
 
 def test_steps_and_seeds_that_cannot_be(tight: Simulation) -> None:
     """PYTHON, low and medium 12."""
-    with pytest.raises(TypeError, match="steps is a whole number of steps, not 1.5"):
+    with pytest.raises(TypeError, match="steps is a whole number, not 1.5"):
         tight.step(1.5)  # type: ignore[arg-type]
-    with pytest.raises(ConfigurationError, match=r"run.seed = 18446744073709551616 is beyond reach"):
+    with pytest.raises(ConfigurationError, match=r"run.seed = 18446744073709551616 is no seed"):
         Simulation.preset("frictionless", seed=2**64)
     with pytest.raises(ConfigurationError, match="shorter than half a step"):
         Simulation.preset("frictionless", strain_rate=0.03, waves=2).run(duration=1e-9)
@@ -288,7 +288,7 @@ def test_several_callbacks_each_with_its_steps(tight: Simulation) -> None:
 
     tight.step(12, callback=[note("often"), (note("seldom"), 5)], every=3)
     assert seen == [("often", 3), ("seldom", 5), ("often", 6), ("often", 9), ("seldom", 10), ("often", 12)]
-    with pytest.raises(TypeError, match="a callback is a function"):
+    with pytest.raises(TypeError, match="callback is a function"):
         tight.step(1, callback=[(5, note("wrong"))])  # type: ignore[list-item]
 
 
@@ -347,7 +347,7 @@ def test_placed_grains_stay_in_order_and_say_that_no_file_repeats_them(tmp_path:
         ([[0, 0]], {}, r"shape \(N, 3\)"),
         ([[0, 0, 1]], {"velocities": [[0, 0]]}, r"shape \(N, 3\)"),
         ([[0, 0, 1]], {"diameters": [1.0, 1.0]}, r"an array of shape \(1,\)"),
-        ([[0, 0, 1]], {"diameters": -1.0}, "diameter_min"),
+        ([[0, 0, 1]], {"diameters": -1.0}, r"diameters\[0\] = -1.0 is no diameter"),
     ],
 )
 def test_grains_that_cannot_stand_so_are_refused(places: list[list[float]], others: dict[str, object], words: str) -> None:

@@ -11,6 +11,10 @@ const KEY: &str = "observe.transition_threshold";
 const PASSED: usize = 3;
 /// Periods from one of them to the next at most, and from such a change to a transition that belongs to it.
 const PERIODS: f64 = 10.0;
+/// How near to grains at rest or to grains that travel with the wave a threshold can tell no flow from theirs.
+const NEAR: f64 = 0.01;
+/// J/Jmax below which no tube on record comes that nothing but its wave drives (-0.11 is the least).
+const BACK_FLOW: f64 = -0.2;
 
 /// That no flow crosses the threshold, as far as the configuration tells.
 pub(super) fn out_of_reach(configuration: &Configuration) -> Option<Warning> {
@@ -19,18 +23,25 @@ pub(super) fn out_of_reach(configuration: &Configuration) -> Option<Warning> {
         InitialState::Rest | InitialState::Settled | InitialState::Placed => (0.0, "at rest"),
         InitialState::Jammed => (1.0, "jammed"),
     };
-    let message = if threshold == start {
-        format!(
-            "J/Jmax = {threshold} is where a run that begins {state} starts, so that the first period decides"
-        )
-    } else if threshold > 1.0 && configuration.axial_body_force() <= 0.0 {
-        format!(
-            "J/Jmax = {threshold} is above 1, the flow of grains that travel with the wave, which nothing drives beyond it"
-        )
+    let force = configuration.axial_body_force();
+    let reason = if (threshold - start).abs() < NEAR {
+        format!("where a run that begins {state} starts, so that the first period decides")
+    } else if threshold > 1.0 && force <= 0.0 {
+        "above 1, the flow of grains that travel with the wave, which nothing drives beyond it"
+            .to_owned()
+    } else if (threshold - 1.0).abs() < NEAR && force <= 0.0 {
+        "the flow of grains that all travel with the wave, which none that slip a little reach"
+            .to_owned()
+    } else if (0.0..NEAR).contains(&threshold) && force >= 0.0 {
+        "the flow of grains at rest, and the wave carries all a little".to_owned()
+    } else if threshold < BACK_FLOW && force >= 0.0 {
+        "a back flow that the wave alone does not drive (a body force against it would)".to_owned()
     } else {
         return None;
     };
-    let message = format!("{message}: take one between the two kinds of flow, such as 0.5");
+    let message = format!(
+        "J/Jmax = {threshold} is {reason}: take one between the two kinds of flow, such as 0.5"
+    );
     Some(Warning { key: KEY, message })
 }
 

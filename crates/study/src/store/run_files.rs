@@ -155,13 +155,7 @@ impl RunFiles {
         if let Some(runs) = self.path.parent() {
             atomic::synchronize(runs)?;
         }
-        for entry in fs::read_dir(&self.path).map_err(StudyError::io("read", &self.path))? {
-            let path = entry.map_err(StudyError::io("read", &self.path))?.path();
-            let name = path.to_string_lossy();
-            if name.ends_with(atomic::PARTIAL_SUFFIX) {
-                fs::remove_file(&path).map_err(StudyError::io("remove", &path))?;
-            }
-        }
+        atomic::sweep(&self.path);
         let configuration = assignment.configuration.to_toml();
         write_if_other(&self.file(CONFIGURATION), &configuration)?;
         let statepoint = format!("{:#}\n", statepoint(assignment));

@@ -8,13 +8,15 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Once;
 
-use peristalsis_configuration::{Configuration, SourceFile, Sources};
+use peristalsis_configuration::{Configuration, InitialState, SourceFile, Sources};
 use peristalsis_engine::{Instructions, processors};
-use peristalsis_run::{Run, RunError, RunFolder, TrajectoryPlan, read_state, warnings};
+use peristalsis_run::{
+    Run, RunError, RunFolder, TrajectoryPlan, read_state, scheduled_wavelengths, warnings,
+};
 
 use crate::arguments::RunArguments;
 use crate::commands::trajectory::{in_words as in_one_line, request};
-use crate::commands::{print, say, tell, warn_besides};
+use crate::commands::{counted, print, rounded, say, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
@@ -130,10 +132,33 @@ fn checked(
     arguments: &RunArguments,
     configuration: Configuration,
 ) -> Result<Configuration, Failure> {
+    if configuration.initial.state == InitialState::Placed {
+        return Err(locate(RunError::NotPlaced, &arguments.configuration));
+    }
     if let Some(request) = request(&arguments.frames) {
         TrajectoryPlan::new(&request, &configuration, 0, configuration.run.steps())?;
     }
+    say_which_periods(arguments, &configuration);
     Ok(configuration)
+}
+
+/// Says of a wave whose rate changes which periods its run counts.
+fn say_which_periods(arguments: &RunArguments, configuration: &Configuration) {
+    if let (Some(wavelengths), Some(periods), Some(period)) = (
+        scheduled_wavelengths(configuration),
+        configuration.run.periods,
+        configuration.drive.period(),
+    ) {
+        let [wavelengths, period] = [wavelengths, period].map(rounded);
+        let periods = counted(rounded(periods), "period");
+        tell(
+            arguments.quiet,
+            &format!(
+                "run.periods counts periods of drive.strain_rate: {periods} of {period} t, in which drive.schedule lets the \
+                 wave run {wavelengths} wavelengths"
+            ),
+        );
+    }
 }
 
 /// A new run with its grains packed, unless it is asked to stop.
@@ -213,6 +238,7 @@ fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Re
         overrides: &[length],
     })?;
     if run.configuration().drive.period().is_some() {
+        say_which_periods(arguments, &configuration);
         return Ok(run.under(configuration)?);
     }
     let (done, asked) = (run.simulation().time(), configuration.run.duration);

@@ -15,7 +15,7 @@ use super::words::known;
 use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
-use crate::commands::{code_of, counted, print, print_json, tell, warn_besides};
+use crate::commands::{code_of, counted, print, print_json, tell, unsigned_zero, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, name};
@@ -360,7 +360,8 @@ impl Scatter {
     }
 
     fn in_words(&self, decimals: usize) -> String {
-        let (mean, number) = (self.mean, self.number);
+        let places = i32::try_from(decimals).unwrap_or(0);
+        let (mean, number) = (unsigned_zero(self.mean, places), self.number);
         let Some((error, deviation)) = self.error.zip(self.deviation()) else {
             return format!("{mean:.decimals$}, of one seed: no scatter is known");
         };

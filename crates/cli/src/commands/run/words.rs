@@ -4,7 +4,7 @@ use peristalsis_analysis::number::known_error;
 use peristalsis_configuration::Units;
 use peristalsis_run::{Pumping, Run, Summary};
 
-use crate::commands::{counted, significant};
+use crate::commands::{counted, significant, unsigned_zero};
 use crate::progress::seconds;
 
 /// How far a run came: in periods, or in time where the wave stands still.
@@ -13,7 +13,7 @@ pub(super) fn how_far(run: &Run, summary: &Summary) -> String {
     match extent.periods {
         Some(periods) => format!(
             "after {} of {}",
-            tenths(summary.periods),
+            tenths(summary.time * run.configuration().drive.strain_rate),
             counted(periods, "period")
         ),
         None => format!("at t = {:.1} of {}", summary.time, extent.duration),
@@ -29,7 +29,10 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             configuration.observe.transition_threshold
         ),
         None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
-        None => format!("no transition within {} periods", tenths(summary.periods)),
+        None => format!(
+            "no transition within {} periods",
+            tenths(summary.time * configuration.drive.strain_rate)
+        ),
     };
     let late = 100.0 * configuration.observe.late_fraction;
     let mut flow = match known(summary.flow_rate_ratio) {
@@ -89,9 +92,9 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     text
 }
 
-/// A number with its error, if one is known.
+/// A number as it reads with four decimals, with its error, if one is known.
 pub(crate) fn known((value, error): (f64, f64)) -> (f64, Option<f64>) {
-    (value, known_error(value, error))
+    (unsigned_zero(value, 4), known_error(value, error))
 }
 
 /// Periods to a tenth, fewer than one to two digits.

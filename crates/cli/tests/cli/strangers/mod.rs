@@ -3,6 +3,7 @@
 
 mod beginning;
 mod figures;
+mod going_on;
 mod runs;
 mod settings;
 mod studies;

@@ -19,21 +19,33 @@ The quality S of Houdayer & Hartmann, Phys. Rev. B 70, 014418 (2004): near 1 whe
 A collapse must keep curves overlapping, so that a search cannot win by pulling them apart.
 """
 
-from ._collapse import Collapse, CollapseEstimate, CollapseQuality, CollapseResult
+from ._collapse import Collapse, CollapseEstimate, CollapseQuality, CollapseResult, JointTest
 from ._columns import Interval, Uncertain
+from ._evidence import LawEvidence, compare_laws, compare_laws_with_scatter
+from ._inverse import InverseFit, fit_inverse_line, fit_inverse_parabola
 from ._laws import (
-    LawEvidence,
     LawRunsFit,
     ScatterLawFit,
     WidthEnsemble,
     WindowRunsFit,
-    compare_laws,
     ensembles_by_width,
     fit_law_to_runs,
     fit_law_to_runs_in_windows,
     fit_law_with_scatter,
 )
-from ._points import CurveFit, LawFit, LineFit, fit_law, fit_line, fit_parabola, power_exponent
+from ._points import (
+    CurveFit,
+    LawFit,
+    LineFit,
+    NearestFit,
+    ScatteredLine,
+    fit_law,
+    fit_law_to_nearest,
+    fit_line,
+    fit_line_to_scatter,
+    fit_parabola,
+    power_exponent,
+)
 from ._order import (
     DipTest,
     FractionCrossing,
@@ -88,6 +100,8 @@ __all__ = [
     "FractionCrossing",
     "Hysteresis",
     "Interval",
+    "InverseFit",
+    "JointTest",
     "Jump",
     "LawEvidence",
     "LawFit",
@@ -96,9 +110,11 @@ __all__ = [
     "LineFit",
     "MomentPeak",
     "Moments",
+    "NearestFit",
     "Peak",
     "RestrictedMoments",
     "ScatterLawFit",
+    "ScatteredLine",
     "SecondMoment",
     "ShiftedExponentialFit",
     "Stationarity",
@@ -112,15 +128,20 @@ __all__ = [
     "WindowRunsFit",
     "autocorrelation_time",
     "compare_laws",
+    "compare_laws_with_scatter",
     "dip_test",
     "ensemble_moments",
     "ensembles_by_width",
+    "fit_inverse_line",
+    "fit_inverse_parabola",
     "fit_law",
+    "fit_law_to_nearest",
     "fit_law_to_runs",
     "fit_law_to_runs_in_windows",
     "fit_law_with_scatter",
     "fit_lifetime",
     "fit_line",
+    "fit_line_to_scatter",
     "fit_parabola",
     "fit_shifted_exponential",
     "fraction_crossing",
@@ -136,3 +157,7 @@ __all__ = [
     "transition_time",
     "two_peaks",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

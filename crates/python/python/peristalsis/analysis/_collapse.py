@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from .. import _core
 from .._arrays import Array
-from ._columns import Interval, Numbers, Uncertain, columns, result
+from .._given import of_kind
+from ._columns import Interval, Numbers, Uncertain, columns, pair, result
 
+#: Scalings by name.
+_SCALINGS = ("finite_size", "critical_line", "critical_each")
+#: Parameters of a scaling in its order: `None` for one that is free.
+Places = Sequence["Uncertain | float | tuple[float, float] | None"]
 #: ``x, y, error`` scaled, from ``(parameters, p, x, y, error)``.
 Scaling = Callable[[list[float], float, float, float, float], tuple[float, float, float]]
 
@@ -146,6 +151,31 @@ class CollapseResult:
     estimate: CollapseEstimate
 
 
+@dataclass(frozen=True)
+class JointTest:
+    """Several parameters of a collapse against values claimed for them, all at once.
+
+    Attributes
+    ----------
+    chi_squared : float
+        Rise of -2 ln likelihood, minimal over all else, from the best to the values claimed.
+    degrees_of_freedom : int
+        Parameters compared.
+    probability : float
+        Probability of a rise at least as large if the values claimed are right.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> analysis.JointTest(chi_squared=5.99, degrees_of_freedom=2, probability=0.05).degrees_of_freedom
+    2
+    """
+
+    chi_squared: float
+    degrees_of_freedom: int
+    probability: float
+
+
 class Collapse:
     """Curves of several parameters and a scaling in which they may fall on one another.
 
@@ -188,6 +218,10 @@ class Collapse:
             x, y, error = columns(*given)
             self.curves.append((float(parameter), x, y, error))
         self.scaling: Any = dict(scaling) if isinstance(scaling, Mapping) else scaling
+        is_known = list(scaling) == ["critical_known"] if isinstance(scaling, Mapping) else scaling in _SCALINGS
+        if not (callable(scaling) or is_known):
+            names = ", ".join(f'"{name}"' for name in _SCALINGS)
+            raise ValueError(f'scaling is {names}, {{"critical_known": [x_c, ...]}} or a function, not {scaling!r}')
         self.least_overlap: float = float(least_overlap)
 
     def fit(
@@ -199,6 +233,7 @@ class Collapse:
         seed: int = 0,
         correction: float | Literal["usual"] | None = "usual",
         leave_one_out: bool = False,
+        known: Places = (),
     ) -> CollapseResult:
         """Parameters under which all points lie best on one smooth curve, with intervals that cover.
 
@@ -221,6 +256,10 @@ class Collapse:
             one that takes a parameter out of its interval.
         leave_one_out : bool
             Whether to repeat the search without each curve in turn.
+        known : sequence, optional
+            Parameters known from elsewhere, in the order of the scaling: a pair of value and error or an `Uncertain`, which
+            count as points beside the others, or None. Serves the x_c of ``"critical_each"`` that were found before: the
+            error of one moves all points of its curve together.
 
         Returns
         -------
@@ -246,12 +285,11 @@ class Collapse:
         """
         if correction == "usual":
             correction = -1.0 if callable(self.scaling) or self.scaling == "finite_size" else 1.0
-        search = {
-            "start": [float(value) for value in start],
-            "steps": [float(value) for value in steps],
+        if leave_one_out and len(known):
+            raise ValueError("leave_one_out repeats the search without what is known: ask for one of the two")
+        search = self._search(start, steps, known) | {
             "starts": int(starts),
             "seed": int(seed),
-            "least_overlap": self.least_overlap,
             "correction": None if correction is None else float(correction),
             "leave_one_out": bool(leave_one_out),
         }
@@ -268,6 +306,63 @@ class Collapse:
             leave_one_out=np.array(left_out, dtype=np.float64),
             estimate=estimate,
         )
+
+    def _search(self, start: Sequence[float], steps: Sequence[float], known: Places) -> dict[str, Any]:
+        return {
+            "start": [float(value) for value in start],
+            "steps": [float(value) for value in steps],
+            "starts": 1,
+            "seed": 0,
+            "least_overlap": self.least_overlap,
+            "correction": None,
+            "leave_one_out": False,
+            "known": [(place, *pair(value)) for place, value in enumerate(known) if value is not None],
+        }
+
+    def joint_test(
+        self, found: CollapseResult, claimed: Sequence[float | None], steps: Sequence[float], *, known: Places = ()
+    ) -> JointTest:
+        """Whether the parameters that were found are those claimed, all at once.
+
+        Exponents of a collapse are correlated: values that each lie within the error of theirs may together be far from the
+        valley in which the curves collapse. The ratio of the likelihoods at the best and with the claimed values held is
+        compared with chi^2.
+
+        Parameters
+        ----------
+        found : CollapseResult
+            What `fit` of these curves answered.
+        claimed : sequence of float or None
+            Values claimed, in the order of the scaling; None leaves a parameter free.
+        steps, known
+            Those of the fit.
+
+        Returns
+        -------
+        JointTest
+            With as many degrees of freedom as values.
+
+        Raises
+        ------
+        AnalysisError
+            For steps or values that do not belong to the scaling, or where the curves do not overlap at the values claimed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from peristalsis import analysis
+        >>> x = np.linspace(-0.5, 0.5, 21)
+        >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
+        >>> collapse, steps = analysis.Collapse(curves, "finite_size"), [0.1, 0.1, 0.02]
+        >>> found = collapse.fit([0.4, 0.9, 0.0], steps, starts=2)
+        >>> right, wrong = (collapse.joint_test(found, values, steps) for values in ([0.5, 1.0, None], [0.7, 1.0, None]))
+        >>> right.probability > 0.5, wrong.probability < 0.001, right.degrees_of_freedom
+        (True, True, 2)
+        """
+        of_kind("found", found, CollapseResult, "what Collapse.fit answered")
+        values = [(place, float(value)) for place, value in enumerate(claimed) if value is not None]
+        search = self._search(found.parameters, steps, known)
+        return result(JointTest, _core.test_collapse(self.curves, self.scaling, search, asdict(found.estimate), values))
 
     def quality(self, parameters: Sequence[float]) -> CollapseQuality:
         """How well the curves collapse at given parameters.

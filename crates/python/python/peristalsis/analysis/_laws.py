@@ -150,44 +150,6 @@ class ScatterLawFit:
 
 
 @dataclass(frozen=True)
-class LawEvidence:
-    """What the runs say for one law.
-
-    Attributes
-    ----------
-    law : str | dict[str, Any]
-        The law.
-    log_likelihood : float
-        Largest log-likelihood.
-    akaike : float
-        Akaike's criterion 2 p - 2 ln L.
-    excess : float
-        Akaike's criterion less that of the best law: beyond some 10 the law has next to no support.
-    weight : float
-        Akaike weight exp(-excess/2) over the sum of all laws compared: how probable it is to be the nearest of them.
-    critical_width : float | None
-        Best w_c, infinite where the law does best as an exponential one; `None` for a law without w_c.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from peristalsis import analysis
-    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
-    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
-    >>> evidence = analysis.compare_laws(["power", "exponential"], width, time, family="exponential")
-    >>> round(sum(law.weight for law in evidence), 6)
-    1.0
-    """
-
-    law: str | dict[str, Any]
-    log_likelihood: float
-    akaike: float
-    excess: float
-    weight: float
-    critical_width: float | None
-
-
-@dataclass(frozen=True)
 class WidthEnsemble:
     """Transition times of the runs at one width, estimated in three ways.
 
@@ -428,57 +390,3 @@ def ensembles_by_width(
     table = run_table(width, time, observed)
     answers = _core.ensembles_by_width(family, table)
     return [result(WidthEnsemble, answer) for answer in answers]
-
-
-def compare_laws(
-    laws: Iterable[_Law],
-    width: Numbers,
-    time: Numbers,
-    observed: npt.ArrayLike | None = None,
-    *,
-    family: _Family = "gamma",
-) -> list[LawEvidence]:
-    """What the runs say for each of several laws, by Akaike's criterion.
-
-    Parameters
-    ----------
-    laws : iterable of str or mapping
-        Laws as of `fit_law_to_runs`.
-    width : array_like
-        w of each run, shape (runs,).
-    time : array_like
-        Its transition time, or its end without a transition.
-    observed : array_like of bool, optional
-        Whether there was a transition; all, by default.
-    family : {"gamma", "exponential", "weibull"}
-        Distribution of the times about their mean.
-
-    Returns
-    -------
-    list of LawEvidence
-        In the order of the laws; the best has excess 0.
-
-    Raises
-    ------
-    AnalysisError
-        Where fewer widths saw a transition than the law has parameters, or the likelihood has no maximum.
-    ValueError
-        For columns of unequal length.
-
-    Notes
-    -----
-    Burnham & Anderson, Model Selection and Multimodel Inference (2002), sections 2.6 and 2.9.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from peristalsis import analysis
-    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
-    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
-    >>> evidence = analysis.compare_laws(["power", "exponential"], width, time, family="exponential")
-    >>> round(sum(law.weight for law in evidence), 6)
-    1.0
-    """
-    table = run_table(width, time, observed)
-    answers = _core.compare_laws([law_of(law) for law in laws], family, table)
-    return [result(LawEvidence, answer) for answer in answers]

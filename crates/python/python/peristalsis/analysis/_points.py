@@ -130,6 +130,62 @@ class CurveFit:
     linearity: float
 
 
+@dataclass(frozen=True)
+class NearestFit:
+    """A law fitted to the values at the largest widths alone.
+
+    Attributes
+    ----------
+    widths : int
+        How many widths, the largest ones.
+    least : float
+        The least of them.
+    fit : LawFit
+        The fit.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.linspace(2.4, 2.7, 8)
+    >>> time = 3.0 * (2.8 - width) ** -1.5
+    >>> fits = analysis.fit_law_to_nearest("power", width, time, 0.01 * time)
+    >>> fits[0].widths, round(fits[0].fit.exponent.value, 3)
+    (4, 1.5)
+    """
+
+    widths: int
+    least: float
+    fit: LawFit
+
+
+@dataclass(frozen=True)
+class ScatteredLine:
+    """A straight line through points whose scatter about it is the only error known.
+
+    Attributes
+    ----------
+    line : LineFit
+        The line; its errors are those of the scatter, the intervals of intercept and slope Student's.
+    determination : float
+        R^2, the part of the variance of y that the line explains.
+    linearity : float or None
+        Probability of a quadratic term at least as large if the points scatter about a line: F-test of line against
+        parabola; `None` with three places, through which every parabola goes.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> fit = analysis.fit_line_to_scatter([0, 1, 2], [1, 2, 6])
+    >>> round(fit.line.slope.error, 4), round(fit.determination, 4), fit.linearity
+    (0.866, 0.8929, None)
+    """
+
+    line: LineFit
+    determination: float
+    linearity: float | None
+
+
 def fit_law(
     law: _Law,
     width: Numbers,
@@ -182,6 +238,52 @@ def fit_law(
     known = None if critical_width is None else pair(critical_width)
     widths, values, errors = columns(width, value, error)
     return result(LawFit, _core.fit_law(law_of(law), widths, values, errors, known))
+
+
+def fit_law_to_nearest(
+    law: _Law,
+    width: Numbers,
+    value: Numbers,
+    error: Numbers,
+    *,
+    critical_width: Uncertain | float | tuple[float, float] | None = None,
+) -> list[NearestFit]:
+    """A law of divergence through the values at the k largest widths, for every k: the exponent against the window.
+
+    An exponent that moves with the window beyond its error is an effective one, that of the range and not of w_c. The fits
+    share their values and do not scatter independently.
+
+    Parameters
+    ----------
+    law, width, value, error, critical_width
+        As of `fit_law`.
+
+    Returns
+    -------
+    list of NearestFit
+        From one width more than the law has free parameters up to all; windows without a fit are left out.
+
+    Raises
+    ------
+    AnalysisError, ValueError
+        As of `fit_law` for all values.
+
+    Examples
+    --------
+    1/tau = d + d^2 with d = 3 - w: the exponent goes to 1 as the window closes.
+
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> d = np.array([1, 0.5, 0.25, 0.125, 0.0625, 0.03125])
+    >>> time = 1 / (d + d**2)
+    >>> fits = analysis.fit_law_to_nearest("power", 3 - d, time, 0.01 * time)
+    >>> [(one.widths, round(one.fit.exponent.value, 2)) for one in fits]
+    [(4, 1.18), (5, 1.25), (6, 1.34)]
+    """
+    known = None if critical_width is None else pair(critical_width)
+    widths, values, errors = columns(width, value, error)
+    answers = _core.fit_law_to_nearest(law_of(law), widths, values, errors, known)
+    return [result(NearestFit, answer) for answer in answers]
 
 
 def fit_line(x: Numbers, y: Numbers, error: Numbers) -> LineFit:
@@ -242,6 +344,43 @@ def fit_parabola(x: Numbers, y: Numbers, error: Numbers) -> CurveFit:
     (1.0, True)
     """
     return result(CurveFit, _core.fit_parabola(*columns(x, y, error)))
+
+
+def fit_line_to_scatter(x: Numbers, y: Numbers) -> ScatteredLine:
+    """A straight line through points of unknown errors, all alike, as one draws it by least squares.
+
+    The variance of the points is chi^2/(n - 2) about the line, so that intercept and slope follow Student's distribution of
+    n - 2 degrees of freedom.
+
+    Parameters
+    ----------
+    x, y : array_like
+        Abscissae and ordinates, shape (n,).
+
+    Returns
+    -------
+    ScatteredLine
+        The line, the part of the variance that it explains, and whether the points bend.
+
+    Raises
+    ------
+    AnalysisError
+        Below 3 distinct abscissae.
+    ValueError
+        For columns of unequal length.
+
+    Notes
+    -----
+    Bevington & Robinson, Data Reduction and Error Analysis (2003), chapters 6 and 11.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> fit = analysis.fit_line_to_scatter([0, 1, 2, 3], [0.1, 0.9, 2.1, 2.9])
+    >>> print(fit.line.slope)
+    0.96 +- 0.057
+    """
+    return result(ScatteredLine, _core.fit_line_to_scatter(*columns(x, y)))
 
 
 def power_exponent(x: Numbers, y: Numbers, error: Numbers) -> LineFit:

@@ -1,0 +1,57 @@
+"""What a caller gives: numbers and objects of a kind, or an error that says what they should be."""
+
+from __future__ import annotations
+
+import math
+import operator
+from typing import Any
+
+import numpy as np
+
+from ._arrays import Array
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """A whole number from `least` on."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is a whole number, not {value!r}") from None
+    if number < least:
+        raise ValueError(f"{name} is {least} or more, not {number}")
+    return number
+
+
+def number(name: str, value: Any) -> float:
+    """A finite number."""
+    try:
+        if isinstance(value, (str, bytes)):
+            raise TypeError
+        found = float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is a number, not {value!r}") from None
+    if not math.isfinite(found):
+        raise ValueError(f"{name} is a finite number, not {found}")
+    return found
+
+
+def positive(name: str, value: Any) -> float:
+    """A number above 0."""
+    found = number(name, value)
+    if found <= 0:
+        raise ValueError(f"{name} is a number above 0, not {found:g}")
+    return found
+
+
+def numbers(name: str, value: Any) -> Array:
+    """A new array of numbers."""
+    try:
+        return np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name} is an array of numbers, not {value!r}") from None
+
+
+def of_kind(name: str, value: Any, kind: type, origin: str) -> None:
+    """Refuses what is no object of a kind; `origin` says what makes one."""
+    if not isinstance(value, kind):
+        raise TypeError(f"{name} is {origin}, not {value!r}")
