@@ -14,7 +14,8 @@ class Drive(State):
     def _drive(self, name: str) -> float:
         value = self._run.driven(name)
         if value is None:
-            raise AttributeError(f"drive.{name} is no parameter of this drive")
+            other = "force_amplitude" if name == "width" else "width"
+            raise AttributeError(f"drive.{name} is no parameter of this drive, whose drive.control has {other}")
         return value
 
     @property

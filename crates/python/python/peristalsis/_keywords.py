@@ -94,8 +94,9 @@ def _plain(key: str, value: Any) -> Any:
 
 def missing(key: str, keys: Iterable[str]) -> str:
     """What to say of a dotted key that a configuration does not have."""
-    of_that_name = [other for other in keys if other.rpartition(".")[2] == key.rpartition(".")[2]]
-    meant = f"; did you mean {of_that_name[0]!r}?" if of_that_name else _meant(key, keys)
+    last = {other.rpartition(".")[2]: other for other in keys}
+    near = get_close_matches(key.rpartition(".")[2], last, 1)
+    meant = f"; did you mean {last[near[0]]!r}?" if near else ""
     return f"there is no key {key!r} in this configuration{meant}"
 
 

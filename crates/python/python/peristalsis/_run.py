@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
 from ._core import Configuration
+from ._given import of_kind
 from ._simulation import Simulation
 
 if TYPE_CHECKING:
@@ -47,6 +48,7 @@ def run(config: Mapping[str, Any]) -> RunSummary:
         simulation = Simulation(config)
         simulation.run()
         return cast("RunSummary", {"config": config.to_dict(), **simulation.summary()})
+    of_kind("config", config, Mapping, "a mapping with preset or file, or a peristalsis.Configuration")
     settings = dict(config)
     preset, file = settings.pop("preset", None), settings.pop("file", None)
     if (preset is None) == (file is None):

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import Array
 from ._core import Configuration, Table
+from ._given import numbers
 from ._warnings import KeyedWarning
 
 if TYPE_CHECKING:
@@ -354,7 +355,7 @@ class State:
         if z is None:
             number = _PLACES * self._run.configuration.waves
             z = np.arange(number) * (self.length / number)
-        places = np.asarray(z, dtype=float)
+        places = numbers("z", z)
         if not np.isfinite(places).all():
             raise ValueError("z is a place along the tube: a finite number")
         return _core.wall_radius(self._run, places.ravel()).reshape(places.shape)

@@ -179,7 +179,9 @@ class Keywords(TypedDict, total=False):
     """drive.order. The segments in the order in which they close, counted from 1 along the wave, each once;
     waveform = "segments". Missing: one after the other along the wave. (A pure number.)"""
     periods: float
-    """run.periods. Length of the run in wave periods, rounded up to whole samples. (Unit: periods.)"""
+    """run.periods. Length of the run in wave periods, rounded up to whole samples. They are those of
+    drive.strain_rate: where a schedule changes the rate, the wave runs more or fewer wavelengths (column period).
+    (Unit: periods.)"""
     places: Sequence[float]
     """tube.places. Place of each of them along the tube, 0 <= z < L. (Unit: d.)"""
     poisson_ratio: float

@@ -163,3 +163,16 @@ def test_the_state_of_a_run_at_work_is_not_written_over(tmp_path: Path) -> None:
     assert Simulation.load(tmp_path).steps == 1
     with pytest.raises(OSError, match="none"):
         sim.save(tmp_path / "none" / "a.checkpoint")
+
+
+def test_keys_and_parameters_that_are_not_there_name_those_that_are(tight: Simulation) -> None:
+    """PYTHON, medium 10: what one mistypes is answered with what one meant."""
+    with pytest.raises(KeyError, match="did you mean 'drive.width'"):
+        tight.configuration["widht"]
+    with pytest.raises(AttributeError, match="whose drive.control has width"):
+        _ = tight.force_amplitude
+    for wrong in (3, "frictionless"):
+        with pytest.raises(TypeError, match="config is a mapping with preset or file"):
+            peristalsis.run(wrong)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="z is an array of numbers, not 'a'"):
+        tight.wall_radius("a")
