@@ -1,12 +1,10 @@
 //! Lengths of runs, how far they are, and what a killed one leaves.
 
-use std::path::PathBuf;
-use std::time::Duration;
-
 use crate::{Place, read_json};
 
 /// The files of killed programs below a folder.
-fn partials(place: &Place) -> Vec<PathBuf> {
+#[cfg(unix)]
+fn partials(place: &Place) -> Vec<std::path::PathBuf> {
     let files = place.inventory().into_keys();
     files
         .filter(|name| name.extension().is_some_and(|it| it == "partial"))
@@ -39,9 +37,9 @@ fn a_wave_whose_rate_changes_says_which_periods_its_run_counts() {
     assert!((periods.unwrap() - 10.0).abs() < 1e-9, "{periods:?}");
     place.does("runs r").shows(&["6 of 6"]);
     place.refuses("run --resume r --periods 5", &["has done 6 periods"]);
-    place
-        .does("run --help")
-        .shows(&["of drive.strain_rate where the rate changes"]);
+    let help = place.does("run --help").stdout;
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(help.contains("of drive.strain_rate where the rate changes"));
     // A wave of one rate has one kind of period.
     let constant = place.does("run SMALL --out constant");
     assert!(!constant.stderr.contains("run.periods counts"));
@@ -51,6 +49,8 @@ fn a_wave_whose_rate_changes_says_which_periods_its_run_counts() {
 #[cfg(unix)]
 #[test]
 fn an_unfinished_run_says_how_far_it_is_and_goes_on_without_remains() {
+    use crate::send;
+    use std::time::Duration;
     let place = Place::new();
     let reached = || {
         let runs = place.does("runs all --json").json();
@@ -62,6 +62,7 @@ fn an_unfinished_run_says_how_far_it_is_and_goes_on_without_remains() {
     let mut child = place
         .start("run SMALL --periods 1e6 --seeds 1..2 --out all --checkpoint-every 1s --threads 1");
     while reached().0.is_none_or(|periods| periods <= 0.0) {
+        assert!(child.try_wait().unwrap().is_none());
         std::thread::sleep(Duration::from_millis(200));
     }
     child.kill().unwrap();
@@ -73,9 +74,13 @@ fn an_unfinished_run_says_how_far_it_is_and_goes_on_without_remains() {
     for folder in ["all", "all/seed-1"] {
         place.write(&format!("{folder}/.aB3xYz.partial"), "half of a checkpoint");
     }
-    let done = periods.unwrap().ceil() + 1e5;
-    let resumed = place.call(&format!("run --resume all --periods {done} --quiet"));
-    assert_eq!(resumed.code, Some(0), "{}", resumed.stderr);
+    let mut child = place.start("run --resume all --quiet");
+    while !partials(&place).is_empty() {
+        assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    send("TERM", &child);
+    assert_eq!(child.wait().unwrap().code(), Some(143));
     assert!(partials(&place).is_empty());
 }
 
