@@ -35,6 +35,7 @@ LEFT_OUT = {r"cargo test\b": "a check of its own", r"cargo install\b": "builds t
 PICTURES = {
     "README.md": {"docs/images/flow.png": "runs/frictionless-1/flow.png"},
     "first-transition.md": {"docs/images/flow.png": "narrow/flow.png", "docs/images/flow-wide.png": "wide/flow.png"},
+    "hysteresis.md": {"docs/images/sweep.png": "sweep/flow.png"},
 }
 
 
