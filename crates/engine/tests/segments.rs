@@ -9,7 +9,7 @@ fn driven(heading: f64, order: Vec<u32>) -> Wall {
         order,
         ..SegmentDrive::default()
     };
-    let segments = Contraction::Segments(Segments::new(&drive).unwrap());
+    let segments = Contraction::Segments(Segments::new(&drive).expect("a cycle"));
     let (amplitude, frequency) = (Schedule::constant(0.4), Schedule::constant(0.1));
     waving(
         lattice(24, 26, 2, 10.0),
@@ -56,7 +56,7 @@ fn flow(heading: f64, order: Vec<u32>) -> f64 {
     let wall = driven(heading, order);
     let parameters = parameters(LINEAR, None, Integrator::Verlet, 0.05);
     let mut simulation = Simulation::new(packed(60, 0.9, &wall, LINEAR, 2), wall, parameters);
-    simulation.advance(200).unwrap();
+    simulation.advance(200).expect("does not diverge");
     let place = |simulation: &Simulation| -> f64 {
         let bodies = simulation.bodies();
         (0..bodies.grains)
@@ -64,7 +64,7 @@ fn flow(heading: f64, order: Vec<u32>) -> f64 {
             .sum()
     };
     let before = place(&simulation);
-    simulation.advance(200).unwrap();
+    simulation.advance(200).expect("does not diverge");
     (place(&simulation) - before) / (60.0 * 10.0)
 }
 

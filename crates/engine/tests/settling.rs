@@ -21,7 +21,8 @@ fn heavy(normal: Normal, friction: Option<CundallStrack>, kernel: Kernel) -> Par
 fn settled(wall: &Wall, parameters: Parameters) -> Simulation {
     let bodies = packed(50, 0.8, wall, parameters.contact.normal, 3);
     let packed = PackingReport::default();
-    let (simulation, report) = settle(bodies, wall.clone(), parameters, packed, &|| false).unwrap();
+    let (simulation, report) =
+        settle(bodies, wall.clone(), parameters, packed, &|| false).expect("they settle");
     assert_eq!(report.largest_overlap, simulation.tally().largest_overlap);
     simulation
 }

@@ -87,12 +87,11 @@ impl Segments {
     pub fn new(drive: &SegmentDrive) -> Option<Self> {
         let number = drive.segments as usize;
         let in_range = |value: f64| (1e-3..=1.0).contains(&value);
-        if !(2..=MOST_SEGMENTS).contains(&number)
-            || ![drive.rise, drive.fall, drive.edge]
-                .into_iter()
-                .all(in_range)
-            || !(drive.duty >= 0.0 && drive.cycle() <= LONGEST_CYCLE)
-        {
+        let ways = [drive.rise, drive.fall, drive.edge];
+        // NaN is in no range.
+        let is_cycle =
+            ways.into_iter().all(in_range) && drive.duty >= 0.0 && drive.cycle() <= LONGEST_CYCLE;
+        if !(2..=MOST_SEGMENTS).contains(&number) || !is_cycle {
             return None;
         }
         let mut turns = [u8::MAX; MOST_SEGMENTS];
