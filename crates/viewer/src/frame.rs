@@ -21,7 +21,7 @@ use peristalsis_physics::wall::Lattice;
 use peristalsis_run::{Run, Warning};
 use serde::Serialize;
 
-use crate::timeline::{Driven, Row};
+use crate::timeline::{Driven, Row, Timeline};
 
 /// The head of a frame.
 #[derive(Clone, Debug, Serialize)]
@@ -59,6 +59,39 @@ pub(crate) struct Head {
     pub(crate) sample: Option<Shown>,
     /// What is doubtful of the run so far; of a recording, of the whole run.
     pub(crate) warnings: Vec<Warning>,
+}
+
+impl Head {
+    /// Of a run at rest as it is, on its first course, without rows and warnings.
+    pub(crate) fn of(run: &Run, contacts: &[f64]) -> Self {
+        let simulation = run.simulation();
+        let wall = simulation.wall();
+        let (wall_spheres, rings) = of_wall(wall);
+        let driven = Driven::of(run);
+        Self {
+            number: None,
+            past: false,
+            epoch: 0,
+            playing: false,
+            ended: false,
+            speed: None,
+            step: simulation.step(),
+            time: simulation.time(),
+            clock: Timeline(run.configuration()).clock(simulation.time()),
+            period: wall.cycles(),
+            wave_speed: wall.frequency(simulation.time()) * wall.wavelength(),
+            grains: simulation.bodies().grains,
+            wall_spheres,
+            rings,
+            turning: run.configuration().contact.friction.is_some(),
+            contacts: contacts.len() / 6,
+            driven,
+            aims: driven,
+            rows: Vec::new(),
+            sample: run.recorder().samples().last().map(Into::into),
+            warnings: Vec::new(),
+        }
+    }
 }
 
 /// Numbers of a sample that are shown.

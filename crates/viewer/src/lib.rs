@@ -16,14 +16,17 @@
 mod course;
 mod frame;
 mod message;
+mod onlooker;
 mod page_viewer;
 #[cfg(feature = "server")]
 mod server;
+mod steering;
 mod timeline;
 mod tube;
 mod welcome;
 mod within;
 
+pub use onlooker::Onlooker;
 pub use page_viewer::PageViewer;
 #[cfg(feature = "server")]
 pub use server::{Figure, Options, Recording, Study, Viewer, ViewerError};

@@ -69,6 +69,15 @@ pub(crate) enum Steered {
     Friction,
 }
 
+impl Steered {
+    pub(crate) const ALL: [Self; 4] = [
+        Self::Width,
+        Self::ForceAmplitude,
+        Self::StrainRate,
+        Self::Friction,
+    ];
+}
+
 /// A message to clients other than a frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]

@@ -114,6 +114,13 @@ impl Timeline<'_> {
     }
 }
 
+/// Rows of the time series of a run from a number on.
+pub(crate) fn rows(run: &Run, from: usize) -> impl Iterator<Item = Row> {
+    let timeline = Timeline(run.configuration());
+    let samples = run.recorder().samples().iter().enumerate().skip(from);
+    samples.map(move |(number, sample)| timeline.row_of(number, sample))
+}
+
 /// Every n-th row, n so that at most [`FIRST_ROWS`] are left.
 pub(crate) fn thin<T>(rows: impl Iterator<Item = T>) -> Vec<T> {
     let rows: Vec<T> = rows.collect();

@@ -5,14 +5,15 @@ use std::path::PathBuf;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use peristalsis_configuration::{Configuration, ScheduledParameter};
+use peristalsis_configuration::Configuration;
 use peristalsis_observe::MOST_ROWS;
 use peristalsis_run::{Run, RunError, RunFolder, Warning};
 
 use crate::course::{Course, Turn};
-use crate::frame::{Head, contacts_of, of_run, of_wall};
+use crate::frame::{Head, contacts_of, of_run};
 use crate::message::{self, Command, Notice, Steered};
-use crate::timeline::{Driven, Row, Timeline, thin};
+use crate::steering::Steering;
+use crate::timeline::{Driven, Timeline, rows, thin};
 use crate::welcome::Welcome;
 use crate::within::Within;
 
@@ -20,8 +21,6 @@ use crate::within::Within;
 pub(crate) const FRAME: f64 = 0.033;
 /// Seconds after which a frame looks whether its time is over, at the latest.
 const PATIENCE: f64 = 0.004;
-/// Periods within which a parameter reaches the value of its slider, so that no wall jumps.
-const RAMP: f64 = 0.25;
 /// Largest speed, in periods a second.
 const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed more sees a gap.
@@ -69,14 +68,11 @@ pub(crate) struct Tube {
     due: f64,
     /// Computing time of a step in seconds.
     step_seconds: f64,
-    /// Values of sliders that the run has not been led to yet.
-    wanted: [(Steered, Option<f64>); 4],
+    steering: Steering,
     /// Step up to which the run is computed before it stops.
     seeking: Option<u64>,
     epoch: u64,
     course: Course,
-    /// Values that the sliders were led to last.
-    aims: [(Steered, Option<f64>); 4],
     /// Whether frames hold the contacts of the grains.
     contacts: bool,
     /// Rows that the page has got; of several clients each may lack others.
@@ -98,8 +94,6 @@ impl Tube {
     }
 
     pub(crate) fn new(mut run: Run, labels: Labels, clock: fn() -> f64) -> Self {
-        use Steered::{ForceAmplitude, Friction, StrainRate, Width};
-        let none = [Width, ForceAmplitude, StrainRate, Friction].map(|it| (it, None));
         Self {
             course: Course::begin(&mut run),
             warned: ((0, 0, 0), run.warnings()),
@@ -112,10 +106,9 @@ impl Tube {
             speed: Some(1.0),
             due: 0.0,
             step_seconds: f64::NAN,
-            wanted: none,
+            steering: Steering::default(),
             seeking: None,
             epoch: 0,
-            aims: none,
             contacts: false,
             told: Cell::new(0),
         }
@@ -137,7 +130,7 @@ impl Tube {
         welcome.driven = Driven::of(&self.run);
         welcome.record = thin(record.map(|&(time, ratio)| (timeline.clock(time), ratio)));
         welcome.within = self.labels.within.clone();
-        welcome.rows = thin(self.rows(0));
+        welcome.rows = thin(rows(&self.run, 0));
         welcome.to_json()
     }
 
@@ -176,13 +169,7 @@ impl Tube {
                 self.seeking = Some((step / each + 1) * each);
             }
             Command::Steer { parameter, value } => {
-                let known = self.wanted.iter_mut().find(|(it, _)| *it == parameter);
-                if let Some((_, wanted)) = known {
-                    *wanted = Some(value);
-                }
-                if let Some((_, aim)) = self.aims.iter_mut().find(|(it, _)| *it == parameter) {
-                    *aim = Some(value);
-                }
+                self.steering.want(parameter, value);
                 self.course.leave();
                 if !self.playing {
                     self.steer()?;
@@ -210,14 +197,7 @@ impl Tube {
     /// Leads parameters that are at rest to the values of their sliders.
     fn steer(&mut self) -> Result<(), RunError> {
         let mut outcome = Ok(());
-        for index in 0..self.wanted.len() {
-            let (parameter, Some(value)) = self.wanted[index] else {
-                continue;
-            };
-            if scheduled(parameter).is_some_and(|it| !self.run.is_at_rest(it)) {
-                continue;
-            }
-            self.wanted[index].1 = None;
+        while let Some((parameter, value)) = self.steering.next(&self.run) {
             let steered = self.lead(parameter, value);
             outcome = outcome.and(steered);
         }
@@ -226,14 +206,8 @@ impl Tube {
 
     /// Leads a parameter to a value from the present step on.
     fn lead(&mut self, parameter: Steered, value: f64) -> Result<(), RunError> {
-        match scheduled(parameter) {
-            Some(scheduled) => self.run.drive_to(scheduled, value, RAMP)?,
-            None => self.run.set_friction(value)?,
-        }
+        self.steering.lead(&mut self.run, parameter, value)?;
         self.course.turn(&mut self.run, parameter, value);
-        if let Some((_, aim)) = self.aims.iter_mut().find(|(it, _)| *it == parameter) {
-            *aim = Some(value);
-        }
         Ok(())
     }
 
@@ -329,12 +303,9 @@ impl Tube {
         self.ended = false;
         self.epoch += 1;
         self.due = 0.0;
-        self.wanted = self.wanted.map(|(parameter, _)| (parameter, None));
-        self.aims = self.wanted;
+        self.steering = Steering::default();
         for turn in self.course.turns() {
-            if let Some((_, aim)) = self.aims.iter_mut().find(|(it, _)| *it == turn.parameter) {
-                *aim = Some(turn.value);
-            }
+            self.steering.aim(turn.parameter, turn.value);
         }
     }
 
@@ -402,76 +373,32 @@ impl Tube {
         self.timeline().clock(self.run.simulation().time())
     }
 
-    /// Rows of the time series from a number on.
-    fn rows(&self, from: usize) -> impl Iterator<Item = Row> {
-        let samples = self.run.recorder().samples().iter().enumerate().skip(from);
-        let timeline = self.timeline();
-        samples.map(move |(number, sample)| timeline.row_of(number, sample))
-    }
-
-    /// The values that sliders show: where a parameter that is on its way is led to.
-    fn aims(&self) -> Driven {
-        let mut aims = Driven::of(&self.run);
-        for ((parameter, aim), (_, wanted)) in self.aims.into_iter().zip(self.wanted) {
-            let is_led =
-                wanted.is_some() || scheduled(parameter).is_some_and(|it| !self.run.is_at_rest(it));
-            let value = aims.of_mut(parameter);
-            *value = value.map(|now| aim.filter(|_| is_led).unwrap_or(now));
-        }
-        aims
-    }
-
     /// The bytes of a message with the present frame; `frame.rs` describes them. One that is kept for those who come later
     /// is marked as `past`.
     pub(crate) fn frame(&self, past: bool) -> Vec<u8> {
-        let simulation = self.run.simulation();
-        let (bodies, wall) = (simulation.bodies(), simulation.wall());
-        let samples = self.run.recorder().samples();
-        let (wall_spheres, rings) = of_wall(wall);
+        let samples = self.run.recorder().samples().len();
         let contacts = if self.contacts && !past {
             contacts_of(&self.run)
         } else {
             Vec::new()
         };
-        let recent = samples.len().saturating_sub(ROWS);
+        let recent = samples.saturating_sub(ROWS);
         let first = match self.labels.saves {
-            _ if past => samples.len(),
-            Saves::Page => self.told.replace(samples.len()).min(recent),
+            _ if past => samples,
+            Saves::Page => self.told.replace(samples).min(recent),
             Saves::Folders { .. } => recent,
         };
         let head = Head {
-            number: None,
             past,
             epoch: self.epoch,
             playing: self.playing,
             ended: self.ended,
             speed: self.speed,
-            step: simulation.step(),
-            time: simulation.time(),
-            clock: self.clock_now(),
-            period: wall.cycles(),
-            wave_speed: wall.frequency(simulation.time()) * wall.wavelength(),
-            grains: bodies.grains,
-            wall_spheres,
-            rings,
-            turning: self.run.configuration().contact.friction.is_some(),
-            contacts: contacts.len() / 6,
-            driven: Driven::of(&self.run),
-            aims: self.aims(),
-            rows: self.rows(first).collect(),
-            sample: samples.last().map(Into::into),
+            aims: self.steering.aims(&self.run),
+            rows: rows(&self.run, first).collect(),
             warnings: self.warned.1.clone(),
+            ..Head::of(&self.run, &contacts)
         };
         of_run(&head, &self.run, &contacts)
-    }
-}
-
-/// What of the drive a slider leads; friction is none of it.
-fn scheduled(parameter: Steered) -> Option<ScheduledParameter> {
-    match parameter {
-        Steered::Width => Some(ScheduledParameter::Width),
-        Steered::ForceAmplitude => Some(ScheduledParameter::ForceAmplitude),
-        Steered::StrainRate => Some(ScheduledParameter::StrainRate),
-        Steered::Friction => None,
     }
 }

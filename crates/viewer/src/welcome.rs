@@ -30,7 +30,7 @@ pub(crate) struct Welcome {
     reach: f64,
     /// Duration of a period at the strain rate of the drive.
     unit_period: f64,
-    ranges: Ranges,
+    pub(crate) ranges: Ranges,
     /// J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed.
     newtonian: Vec<(f64, f64)>,
     pub(crate) driven: Driven,
