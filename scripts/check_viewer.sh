@@ -2,7 +2,7 @@
 # The viewer in Chromium: the bundle is that of the sources, and the page does what it should. Needs npm and chromium.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-bundles=(crates/viewer/assets/viewer.js crates/viewer/assets/study.js)
+bundles=(crates/viewer/assets/{viewer,study,widget}.js)
 committed=$(sha256sum "${bundles[@]}")
 bash scripts/viewer_bundle.sh
 if [ "$committed" != "$(sha256sum "${bundles[@]}")" ]; then

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the viewer's page from viewer/ into crates/viewer/assets/viewer.js, which is committed. Needs npm.
+# Builds the viewer's page from viewer/ into crates/viewer/assets/*.js, which are committed. Needs npm.
 set -euo pipefail
 cd "$(dirname "$0")/../viewer"
 npm ci --ignore-scripts --no-audit --no-fund

@@ -9,7 +9,7 @@ if ! [ -d "$(rustc --print sysroot)/lib/rustlib/$target" ]; then
 fi
 # Every browser has had these instructions for years; none of them rounds otherwise.
 export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="-C target-feature=+simd128"
-cargo build --locked --profile browser --target "$target" -p peristalsis-viewer --no-default-features --example browser
+cargo build --locked --profile browser --target "$target" -p peristalsis-viewer --no-default-features --features page --example browser
 rm -rf target/web
 mkdir -p target/web
 install -m 644 "${CARGO_TARGET_DIR:-target}/$target/browser/examples/browser.wasm" target/web/engine.wasm
@@ -22,7 +22,7 @@ assets=crates/viewer/assets
 cp "$assets/viewer.css" "$assets/icon.svg" README.md VALIDATION.md CITATION.cff LICENSE-MIT THIRD-PARTY.txt docs/images/space-time.png target/web/
 cp crates/python/README.md target/web/python.md
 cp docs/images/viewer.jpg target/web/share.jpg
-# Where nothing can be drawn in space there is a film.
+# For browsers without JavaScript.
 cp docs/images/jamming.gif target/web/film.gif
 if [ -d target/book ]; then cp -r target/book target/web/book; fi
 # Its address is not known here: SOURCE=https://… just web

@@ -1,7 +1,8 @@
 // What new users met, each as a check, and what the page is to do besides; called by check.mjs.
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
-import { brotliCompressSync } from "node:zlib";
+import { gzipSync } from "node:zlib";
+import { widgetChecks } from "./check-widget.mjs";
 
 const AXE = readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
 
@@ -133,6 +134,79 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
     void closeDark;
   }
 
+  /** Rows 11 to 13 of those who met the page first, files of the stage, and a start at another time. */
+  async function checkNumbers(browser) {
+    const { address, end } = await serve("frictionless", "--set", "tube.waves=2");
+    const { page, close } = await open(browser, `${address}#jump=2`, desk);
+    // A link may lead to another time.
+    await until(page, () => Math.abs(window.viewer.measured.clock - 2) < 0.1 && !window.viewer.measured.playing);
+    // The first view is full of tube from side to side, however few its waves are.
+    const sides = await page.evaluate(() => {
+      const stage = document.getElementById("stage");
+      const copy = document.createElement("canvas");
+      [copy.width, copy.height] = [stage.width, stage.height];
+      const context = copy.getContext("2d", { willReadFrequently: true });
+      context.drawImage(stage, 0, 0);
+      const wide = Math.floor(0.03 * copy.width);
+      return [0, copy.width - wide].map((left) => {
+        const { data } = context.getImageData(left, 0, wide, copy.height);
+        let edges = 0;
+        for (let at = 4; at < data.length; at += 4) if (Math.abs(data[at + 1] - data[at - 3]) > 20) edges += 1;
+        return (4 * edges) / data.length;
+      });
+    });
+    assert(sides.every((part) => part > 0.005), `edges cover ${sides} of the sides of the stage`);
+    // Numbers have names and units; the flow is a mean, which is said.
+    assert.match(await page.textContent(".flow"), /mean over one period/);
+    const numbers = await page.textContent("#numbers");
+    for (const unit of [/w[0-9.]+ d/, /temperature[0-9.·⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ m d²\/t²/, /wall[−0-9.·⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ m d²\/t³/]) assert.match(numbers, unit);
+    assert.match(await page.textContent("#sliders"), /Width w \/ d.*Strain rate ε̇ \/ t⁻¹/s);
+    await page.click("#loop-svg");
+    const svg = await page.evaluate(() => [...window.offered.values()].at(-1).text());
+    for (const words of ["width w / d", "J / Jmax", "Newtonian fluid", "narrowed", "widened"]) assert(svg.includes(words), `the loop lacks ${words}`);
+    // Words beside an upright line stay inside of the chart.
+    const ends = await page.evaluate(() => {
+      const { loop } = window.viewer.readout.charts;
+      const places = [];
+      const own = loop.context.fillText;
+      loop.context.fillText = (text, x) => {
+        const { width } = loop.context.measureText(text);
+        places.push(loop.context.textAlign === "left" ? [x, x + width] : [x - width, x]);
+      };
+      loop.label(loop.x.to, "lets go", "left", "#000");
+      loop.label(loop.x.from, "jams", "right", "#000");
+      loop.context.fillText = own;
+      return { places, box: loop.box };
+    });
+    for (const [from, to] of ends.places)
+      assert(from >= ends.box.left && to <= ends.box.left + ends.box.width, `words from ${from} to ${to} in ${JSON.stringify(ends.box)}`);
+    // The pace that is told is the one that is reached.
+    await fastest(page);
+    await until(page, () => /now [0-9.]+ T\/s/.test(document.getElementById("pace").textContent));
+    const [from, begin] = await page.evaluate(() => [window.viewer.measured.clock, performance.now()]);
+    await page.waitForTimeout(4000);
+    const [to, now, told] = await page.evaluate(() => [window.viewer.measured.clock, performance.now(), document.getElementById("pace").textContent]);
+    const reached = (1000 * (to - from)) / (now - begin);
+    const pace = Number(/now ([0-9.]+)/.exec(told)[1]);
+    assert(pace > reached / 3 && pace < 3 * reached, `${told}, and ${reached} are reached`);
+    await page.click("#play");
+    // A picture and a film of the stage.
+    await page.click("#share");
+    await until(page, () => document.getElementById("share-dialog").open);
+    await page.evaluate(() => window.offered.clear());
+    await page.click("#picture");
+    await until(page, () => window.offered.size === 1);
+    await page.click("#film-button");
+    await until(page, () => /recording: \d+ s/.test(document.getElementById("film-button").textContent));
+    await until(page, () => window.offered.size === 2);
+    const files = await page.evaluate(async () =>
+      Promise.all([...window.offered.values()].map(async (file) => [file.size, ...new Uint8Array(await file.slice(0, 4).arrayBuffer())])));
+    assert.deepEqual(files.map((file) => file.slice(1)), [[0x89, 0x50, 0x4e, 0x47], [0x1a, 0x45, 0xdf, 0xa3]]);
+    assert(files.every(([size]) => size > 2000), `${files}`);
+    await close();
+    end();
+  }
+
   async function checkBare(browser) {
     const { address, end } = await serve("frictionless", "--set", "tube.waves=2");
     // Without WebGL the charts go on.
@@ -145,10 +219,16 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
       };
     });
     await page.goto(address);
-    // It plays by itself, for who has not asked for stillness.
+    // It plays by itself, for who has not asked for stillness, and the tube is drawn flat.
     await until(page, () => window.viewer?.measured.clock > 0.3);
     assert(await page.isVisible("#flat"));
+    const first = await pixels(page);
+    assert(first.edges > 0.005 && first.coloured > 0.01, `of the flat stage ${first.edges} are edges, ${first.coloured} coloured`);
+    await until(page, () => window.viewer?.measured.clock > 1);
+    await page.waitForTimeout(300);
+    assert.notEqual((await pixels(page)).sum, first.sum);
     await shoot(page, "no-webgl");
+    await audit(page, "a run without WebGL");
     await context.close();
     const silent = await browser.newContext({ ...desk, javaScriptEnabled: false });
     const text = await silent.newPage();
@@ -189,6 +269,10 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
       assert(place[0] < x || place[0] > x + width || place[1] < y || place[1] > y + height, "the tip covers its point");
     }
     await audit(page, "a study");
+    await page.click("#view-heat");
+    await until(page, () => document.querySelectorAll("#charts canvas").length > 0 && document.getElementById("view-heat").ariaPressed === "true");
+    await audit(page, "a map of a study");
+    await page.click("#view-curves");
     for (const name of names) {
       await choose(name.split(" (")[0]);
       await shoot(page, `studies-${name.split(" (")[0]}`);
@@ -196,6 +280,8 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
     await close();
     const { page: dark, close: closeDark } = await open(browser, address, { ...desk, colorScheme: "dark" }, () => window.study?.measured.places.length > 0);
     await audit(dark, "a study, dark");
+    await dark.click("#view-heat");
+    await audit(dark, "a map of a study, dark");
     await closeDark();
     end();
   }
@@ -206,12 +292,14 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
       return;
     }
     const files = ["index.html", "viewer.css", "viewer.js", "worker.js", "engine.wasm"];
-    const size = files.reduce((sum, name) => sum + brotliCompressSync(readFileSync(new URL(name, WEB))).length, 0);
-    console.log(`the front page: ${(size / 1000).toFixed(0)} kB compressed`);
+    const size = files.reduce((sum, name) => sum + gzipSync(readFileSync(new URL(name, WEB)), { level: 9 }).length, 0);
+    console.log(`the front page: ${(size / 1000).toFixed(0)} kB compressed by gzip`);
     assert(size < 900e3, `${size} bytes`);
     const { address, end } = await serveFiles();
     // It moves by itself, but for who asks for stillness.
     const { page, close } = await open(browser, address, { ...desk, reducedMotion: "no-preference" });
+    const words = await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0].startTime);
+    console.log(`the front page: first words after ${words.toFixed(0)} ms, the tube after ${(await page.evaluate(() => window.drawn)).toFixed(0)} ms`);
     await until(page, () => window.viewer.measured.playing && window.viewer.measured.clock > 0.2);
     await shoot(page, "front");
     await audit(page, "the front page");
@@ -267,5 +355,6 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
     end();
   }
 
-  return { more: checkMore, bare: checkBare, studies: checkStudies, front: checkFront };
+  return { more: checkMore, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
+    ...widgetChecks({ serve, until, shoot, audit, desk }) };
 }

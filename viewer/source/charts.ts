@@ -160,7 +160,9 @@ export class Chart {
     context.fillStyle = colours.faint;
     context.textAlign = "center";
     context.textBaseline = "top";
-    for (const tick of this.x.ticks(across / 60)) {
+    // Numbers that are long have fewer ticks.
+    const wide = Math.max(60, ...this.x.ticks(across / 60).map((tick) => context.measureText(written(tick)).width + 24));
+    for (const tick of this.x.ticks(across / wide)) {
       context.strokeStyle = colours.line;
       this.line(this.x.at(tick), top, this.x.at(tick), top + high);
       context.fillText(written(tick), this.x.at(tick), top + high + 5);
@@ -250,13 +252,15 @@ export class Chart {
     context.stroke();
   }
 
-  /** Words beside an upright line, below the top. */
+  /** Words beside an upright line, below the top; on its other side where there is no room. */
   label(x: number, text: string, side: "left" | "right", colour: string): void {
     const { context } = this;
     context.fillStyle = colour;
-    context.textAlign = side === "right" ? "right" : "left";
+    const [place, room] = [this.x.at(x), context.measureText(text).width + 4];
+    const isRightOf = side === "left" ? place + room <= this.box.left + this.box.width : place - room < this.box.left;
+    context.textAlign = isRightOf ? "left" : "right";
     context.textBaseline = "middle";
-    context.fillText(text, this.x.at(x) + (side === "right" ? -4 : 4), this.box.top + 0.35 * this.box.height);
+    context.fillText(text, place + (isRightOf ? 4 : -4), this.box.top + 0.35 * this.box.height);
   }
 
   upright(x: number, colour: string): void {

@@ -88,7 +88,7 @@ export class Engine implements Connection {
   }
 }
 
-function hear(listener: Listener, data: string | ArrayBuffer): void {
+export function hear(listener: Listener, data: string | ArrayBuffer): void {
   if (typeof data === "string") listener.told(JSON.parse(data) as Told);
   else listener.frame(decode(data));
 }

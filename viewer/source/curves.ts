@@ -89,9 +89,14 @@ export function extent(points: Point[], logarithmic: boolean): [number, number] 
 export function drawCurves(chart: Chart, curves: Curve[], chosen: Point | null, colours: Ink): Map<Point, [number, number]> {
   const places = new Map<Point, [number, number]>();
   const { context } = chart;
-  for (const { points, style } of curves)
-    // A lower limit is no place that the curve goes through.
-    chart.curve(points.map(({ x, value, atLeast }) => [x, atLeast ? NaN : value]), style.colour, 1.6, style.open ? [5, 4] : []);
+  for (const { points, style } of curves) {
+    // A lower limit is no place that the curve goes through, and another tube is another curve.
+    const path = points.flatMap(({ x, value, atLeast, tube }, k): [number, number][] => {
+      const place: [number, number] = [x, atLeast ? NaN : value];
+      return k > 0 && points[k - 1].tube !== tube ? [[x, NaN], place] : [place];
+    });
+    chart.curve(path, style.colour, 1.6, style.open ? [5, 4] : []);
+  }
   for (const { points, style } of curves) {
     for (const point of points) {
       const [x, y] = [chart.x.at(point.x), chart.y.at(point.value)];

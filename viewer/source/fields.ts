@@ -126,6 +126,13 @@ const SEQUENTIAL: Colour[] = [[48, 18, 90], [38, 92, 150], [36, 150, 140], [130,
 /** Its end is its begin. */
 const ROUND: Colour[] = [[226, 217, 226], [98, 118, 186], [47, 20, 54], [178, 84, 82], [226, 217, 226]];
 
+/** Each grain's place on the scale of a field, from 0 to 1; no number where it has none. */
+export function partsOf(field: Field, frame: Frame, tube: Welcome, into = new Float32Array(frame.grains)): Float32Array {
+  field.values(frame, tube, into);
+  if (field.diverging) for (let i = 0; i < into.length; i++) into[i] = 0.5 + 0.5 * into[i];
+  return into;
+}
+
 /** The scale of colours of a field. */
 export function stops(field: Field, lightness: boolean): Colour[] {
   if (field.cyclic) return ROUND;

@@ -4,6 +4,7 @@ import { FIELDS } from "./fields";
 import { showField } from "./field-legend";
 import type { Film } from "./film";
 import { History } from "./history";
+import { Host, isHosted } from "./host";
 import { listenToKeys } from "./keys";
 import { element, isStillAsked, listenToDialogs, listenToLook, listenToSizes, say } from "./page";
 import { listenToLooks } from "./looks";
@@ -23,6 +24,8 @@ import { Sweep } from "./sweep";
 import { choice, named, wanted } from "./tubes";
 import { showWithin } from "./within";
 
+/** Pictures whose work is remembered. */
+const WORKS = 60;
 /** Milliseconds between two drawings of the charts. */
 const CHARTS = 120;
 
@@ -41,8 +44,8 @@ class Page {
   private chapter: Chapter | null = null;
   /** Whether the tube that comes is to be swept there and back. */
   private sweeps = false;
-  /** Milliseconds of the page's own work for a picture. */
-  private work = 0;
+  /** Milliseconds of the page's own work for each of the last pictures. */
+  private work: number[] = [];
   /** Number of the frame that is shown; the newest where it is null, which no recording has. */
   private cursor: number | null = null;
   /** Whether kept frames are played from the cursor on. */
@@ -79,7 +82,7 @@ class Page {
     // The page that is put on any server computes its tube itself.
     const alone = document.body.dataset.engine === "page";
     if (alone) this.engine = new Engine(listener, wanted());
-    this.connection = this.engine ?? new Server(listener);
+    this.connection = this.engine ?? (isHosted() ? new Host(listener) : new Server(listener));
     this.address = new Address(this.connection, alone, () => ({
       eye: this.scene?.eye ?? [], middle: this.scene?.middle ?? 0, field: this.field, wall: this.scene?.wall ?? WALLS[0],
       clock: this.shownFrame?.clock ?? 0, playing: this.shownFrame?.playing ?? false,
@@ -136,15 +139,15 @@ class Page {
       this.connection.send({ type: "follow", turns: this.asked.turns ?? [], step: this.asked.step });
     } else if (this.asked.jump && !tube.recorded && tube.rows.length === 0) {
       this.connection.send({ type: "seek", period: this.asked.jump });
-    } else if (!tube.recorded && tube.rows.length === 0 && !isStillAsked()) {
-      // The first picture moves, but for who asks for stillness.
+    } else if (!tube.recorded && tube.rows.length === 0 && !isStillAsked() && !isHosted()) {
+      // The first picture moves, but for who asks for stillness, and where the run is another's.
       this.connection.send({ type: "play", playing: true });
     }
     if (this.sweeps) this.sweep.begin(tube);
     document.body.dataset.ready = "true";
   }
 
-  /** The stage; without the means to draw in space the charts and the map have to do. */
+  /** The stage; without the means to draw in space the tube is drawn flat, with the charts. */
   private stage(tube: Welcome): void {
     if (this.scene) return this.scene.open(tube);
     if (document.body.dataset.flat) return;
@@ -153,7 +156,6 @@ class Page {
     } catch {
       document.body.dataset.flat = "true";
       element("flat").hidden = false;
-      if (this.engine) element<HTMLImageElement>("film").src = "film.gif";
       return;
     }
     this.scene.lookAs(this.asked);
@@ -318,7 +320,7 @@ class Page {
       this.chartsDrawn = now;
       this.showReadout(frame, tube);
     }
-    if (pictures !== scene?.pictures) this.work += 0.1 * (performance.now() - begin - this.work);
+    if (pictures !== scene?.pictures) this.work = [...this.work.slice(-WORKS), performance.now() - begin];
   }
 
   private showReadout(frame: Frame, tube: Welcome): void {
@@ -402,7 +404,7 @@ class Page {
     element("onward").onclick = () => void this.goOn(this.film.clock(this.shown()), "Go on from here?", "go on from here");
     element("again").onclick = () => void this.goOn(0, "Begin anew?", "from the start");
     element("sweep").onclick = () => (this.sweep.isGoing ? this.sweep.end() : this.tube && this.sweep.begin(this.tube));
-    listenToShare(this.address, () => this.tube?.title ?? "tube");
+    listenToShare(this.address, () => this.tube?.title ?? "tube", () => this.scene?.touch());
     for (const kind of ["png", "svg", "csv"] as const) element(`loop-${kind}`).onclick = () => this.tube && this.shownFrame && giveLoop(kind, this.readout.charts.loop, this.film, this.tube, this.shownFrame);
     element("grain-close").onclick = () => this.pick(-1);
     listenToDialogs();
@@ -477,8 +479,7 @@ class Page {
     return {
       frames: this.film.count,
       pictures: this.scene?.pictures ?? 0,
-      drawing: this.scene?.frameTime ?? 0,
-      work: this.work,
+      work: this.work.toSorted((a, b) => a - b)[this.work.length >> 1],
       rows: this.film.rows.length,
       fineness: this.scene?.part ?? 1,
       playing: this.playing(),

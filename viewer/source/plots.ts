@@ -1,5 +1,5 @@
 import type { Chart, Entry, Ink } from "./charts";
-import { colourAt, inWave, stops, type Field } from "./fields";
+import { colourAt, type Field, inWave, partsOf, stops } from "./fields";
 import type { Film } from "./film";
 import type { Frame, Welcome } from "./protocol";
 
@@ -122,7 +122,7 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
 }
 
 /** Radius of the tube at 49 places of the wave. */
-function outline(frame: Frame | undefined, tube: Welcome): number[] {
+export function outline(frame: Frame | undefined, tube: Welcome): number[] {
   const places = 48;
   if (!frame) return [];
   const sums = Array.from({ length: places }, () => [0, 0]);
@@ -166,8 +166,7 @@ export function drawMap(
   canvas.height = Math.round(height * density);
   context.setTransform(density, 0, 0, density, 0, 0);
   const scale = stops(values, lightness);
-  const tones = new Float32Array(frame.grains);
-  values.values(frame, tube, tones);
+  const tones = partsOf(values, frame, tube);
   const place = (z: number) => (tube.heading > 0 ? z : tube.length - z) / tube.length;
   const reach = 1.15 * tube.reach;
   const thick = Math.max(1, (width / tube.length) * 0.8);
@@ -179,7 +178,7 @@ export function drawMap(
   const across = Math.max(1, Math.round(density * thick));
   const down = Math.max(2, Math.round(density * 2.5));
   for (let i = 0; i < frame.grains; i++) {
-    const tone = values.diverging ? 0.5 + 0.5 * tones[i] : tones[i];
+    const tone = tones[i];
     const colour = Number.isNaN(tone) ? unknown : inks[Math.round(255 * Math.min(1, Math.max(0, tone)))];
     const left = Math.round(place(frame.position[3 * i + 2]) * image.width - 0.5 * across);
     const top = Math.round(0.5 * image.height * (1 - frame.position[3 * i] / reach) - 0.5 * down);

@@ -1,6 +1,7 @@
 import { Chart, ink, written } from "./charts";
 import { FIELDS } from "./fields";
 import type { Film } from "./film";
+import { drawFlat } from "./flat";
 import { acrossOf, drawLoop, thresholds, wordsOf } from "./loop";
 import { element, fill } from "./page";
 import { drawBottleneck, drawFlow, drawMap, drawProfile } from "./plots";
@@ -62,6 +63,7 @@ export class Readout {
     if (isLong) this.spaceTime.draw(charts.spaceTime, tube, lightness, colours);
     const view = scene ? { middle: scene.middle, half: scene.halfShown() / 1.1 } : { middle: 0, half: tube.length };
     drawMap(element<HTMLCanvasElement>("map"), frame, FIELDS[shown.field], tube, lightness, view, colours);
+    if (!scene) drawFlat(element<HTMLCanvasElement>("stage"), frame, FIELDS[shown.field], tube, lightness, colours);
     this.showNumbers(shown, now);
   }
 

@@ -48,6 +48,8 @@ export interface Point {
   x: number;
   /** The member of the family, or the place on the other axis; null where there is none. */
   other: Value | null;
+  /** What tube it is, where tubes differ and none of what they differ in goes across. */
+  tube: string;
   value: number;
   /** Standard error; NaN where it is not known. */
   error: number;
@@ -79,6 +81,9 @@ const QUANTITIES = [
   "dissipated_power", "pumping_efficiency", "useful_power", "flow_rate_ratio_variance", "residence_time",
   "axial_dispersion", "bottleneck", "escaped", "energy_residual",
 ];
+
+/** Columns that say what tube it is: no line joins tubes unlike each other, unless one of these goes across. */
+const TUBE = ["tube.radius", "tube.wavelength", "tube.spheres_per_ring", "tube.rings_per_wave"];
 
 /** Columns of numbers that are neither. */
 const NEITHER = new Set(["replicate", "seed", "grains", "transition_threshold", "steps"]);
@@ -198,6 +203,7 @@ export class Results {
       start: String(this.value("initial_state", rows[0]) ?? ""),
       x: this.number(x, rows[0]),
       other: other === null ? null : this.value(other, rows[0]),
+      tube: TUBE.includes(x) ? "" : JSON.stringify(TUBE.map((name) => this.value(name, rows[0]))),
       value: mean,
       error: number > 1 ? Math.sqrt(squares / (number - 1) / number) : alone,
       number,

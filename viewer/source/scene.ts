@@ -2,7 +2,7 @@ import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Ink } from "./charts";
 import { Bands, ForceScale } from "./bands";
-import { colourAt, type Field, stops } from "./fields";
+import { colourAt, type Field, partsOf, stops } from "./fields";
 import type { Frame, Welcome } from "./protocol";
 import { drawn, Side, Spheres, type Uniforms } from "./spheres";
 
@@ -36,8 +36,7 @@ export class Scene {
   /** Whether the forces between grains are drawn. */
   contacts = false;
   readonly forces = new ForceScale();
-  /** Milliseconds of the last pictures, and how many were drawn. */
-  frameTime = 0;
+  /** How many were drawn. */
   pictures = 0;
   private readonly scene = new three.Scene();
   private readonly camera = new three.PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 2000);
@@ -187,8 +186,7 @@ export class Scene {
     this.hasSign = field.diverging;
     const number = frame.grains;
     if (this.values.length !== number) this.values = new Float32Array(number);
-    field.values(frame, this.tube, this.values);
-    if (field.diverging) for (let i = 0; i < number; i++) this.values[i] = 0.5 + 0.5 * this.values[i];
+    partsOf(field, frame, this.tube, this.values);
     const scale = stops(field, this.lightness);
     const texels = this.scaleTexture.image.data as Uint8Array;
     for (let i = 0; i < 256; i++) texels.set([...colourAt(scale, i / 255), 255], 4 * i);
@@ -201,9 +199,8 @@ export class Scene {
     this.orbit.update();
     if (!this.stale) this.sharpen();
     if (!this.stale || !this.frame) return;
-    const begin = performance.now();
     // Another size empties the canvas, so it comes before the picture.
-    this.keepUp(begin, since);
+    this.keepUp(performance.now(), since);
     this.stale = false;
     this.backdrop(stageMiddle, stageEdge);
     (this.shared.rim.value as three.Color).setStyle(text, three.LinearSRGBColorSpace);
@@ -226,7 +223,6 @@ export class Scene {
     if (this.wall !== "hidden") this.placeWall(this.frame, images);
     this.renderer.render(this.scene, this.camera);
     this.pictures += 1;
-    this.frameTime += 0.1 * (performance.now() - begin - this.frameTime);
   }
 
   /** Draws a picture that stands still once more with all its pixels. */

@@ -81,14 +81,16 @@ export function takePicture(canvas: HTMLCanvasElement, name: string): void {
   canvas.toBlob((file) => file && download(`${name}.png`, file));
 }
 
-/** The stage as a film of the next ten seconds. */
-export function takeFilm(canvas: HTMLCanvasElement, name: string, button: HTMLButtonElement): void {
+/** The stage as a film of the next ten seconds; what stands still is drawn again now and then, for only drawing gives frames. */
+export function takeFilm(canvas: HTMLCanvasElement, name: string, button: HTMLButtonElement, redraw: () => void): void {
   const recorder = new MediaRecorder(canvas.captureStream(30), { videoBitsPerSecond: 8e6 });
   const parts: Blob[] = [];
   const label = button.textContent;
   button.disabled = true;
   recorder.ondataavailable = ({ data }) => parts.push(data);
+  const drawing = setInterval(redraw, 250);
   recorder.onstop = () => {
+    clearInterval(drawing);
     download(`${name}.webm`, new Blob(parts, { type: recorder.mimeType }));
     button.disabled = false;
     button.textContent = label;
@@ -119,6 +121,8 @@ export class Address {
   constructor(private readonly connection: Connection, private readonly own: boolean, private readonly view: () => View) {}
 
   keep(): void {
+    // A page inside of another has no address of its own.
+    if (location.protocol === "about:") return;
     clearTimeout(this.timer);
     this.timer = window.setTimeout(() => this.ask(), KEEPING);
   }
@@ -149,12 +153,12 @@ export class Address {
 }
 
 /** The button that shares, and those of its dialog. */
-export function listenToShare(address: Address, title: () => string): void {
+export function listenToShare(address: Address, title: () => string, redraw: () => void): void {
   const stage = element<HTMLCanvasElement>("stage");
   element("share").onclick = () => address.share();
   element("picture").onclick = () => takePicture(stage, title());
   const film = element<HTMLButtonElement>("film-button");
-  film.onclick = () => takeFilm(stage, title(), film);
+  film.onclick = () => takeFilm(stage, title(), film, redraw);
   for (const id of ["link", "embed"])
     element(`copy-${id}`).onclick = () => void navigator.clipboard?.writeText(element<HTMLInputElement>(id).value);
   addEventListener("hashchange", () => location.reload());

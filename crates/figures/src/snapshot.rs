@@ -118,7 +118,7 @@ impl SnapshotFigure<'_> {
                 let name = is_last.then(|| with_extent("*z*/*d*", common_extent));
                 let title = if number == 0 { &*header } else { "" };
                 let from = row * number as f64;
-                let panel = ChartPanel::new(&name.unwrap_or_default(), "*x*/*d*")
+                let panel = ChartPanel::new(&name.unwrap_or_default(), "*y*/*d*")
                     .title(title)
                     .x_range(from..=from + row)
                     .y_range(-reach * (1.0 + MARGIN)..=reach * (1.0 + MARGIN));

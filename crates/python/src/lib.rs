@@ -11,6 +11,7 @@ mod error;
 mod frames;
 mod load;
 mod newtonian;
+mod onlooker;
 mod run;
 mod study;
 mod table;
@@ -57,6 +58,8 @@ mod _core {
     use crate::load::{contacts, load, volume, wall_radius};
     #[pymodule_export]
     use crate::newtonian::{Newtonian, trapping_threshold_at};
+    #[pymodule_export]
+    use crate::onlooker::{Onlooker, page};
     #[pymodule_export]
     use crate::run::Run;
     #[pymodule_export]

@@ -17,6 +17,7 @@ mod course;
 mod frame;
 mod message;
 mod onlooker;
+pub mod page;
 mod page_viewer;
 #[cfg(feature = "server")]
 mod server;

@@ -17,7 +17,7 @@ pub struct Onlooker {
     /// Rows of the time series that the page has got.
     told: usize,
     /// The warnings of the run as they were after so many periods.
-    warned: Option<(usize, Vec<Warning>)>,
+    warned: Option<(u64, Vec<Warning>)>,
 }
 
 impl Onlooker {
@@ -67,7 +67,7 @@ impl Onlooker {
             true => contacts_of(run),
             false => Vec::new(),
         };
-        let periods = run.recorder().averages().len();
+        let periods = run.recorder().periods();
         if self.warned.as_ref().is_none_or(|(at, _)| *at != periods) {
             self.warned = Some((periods, run.warnings()));
         }

@@ -58,8 +58,9 @@ impl Threads {
         self.0.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
+    /// Never where there are no threads, so that what would share work out is not compiled there.
     pub(crate) fn several(&self) -> bool {
-        self.0.is_some()
+        cfg!(not(target_family = "wasm")) && self.0.is_some()
     }
 
     /// Does work that shares itself out.

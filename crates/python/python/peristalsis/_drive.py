@@ -2,14 +2,28 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+from weakref import WeakSet
+
 from ._given import number
 from ._state import State
+
+if TYPE_CHECKING:
+    from ._view import View
 
 
 class Drive(State):
     """Parameters of the drive, which may change during a run; `Simulation` is the public class."""
 
-    __slots__ = ()
+    __slots__ = ("_views",)
+
+    #: Widgets that show it.
+    _views: WeakSet[View]
+
+    def _lead(self, name: str, value: float) -> None:
+        self._run.drive_to(name, number(name, value), 0.0)
+        for view in tuple(self._views):
+            view._show()
 
     def _drive(self, name: str) -> float:
         value = self._run.driven(name)
@@ -34,7 +48,7 @@ class Drive(State):
 
     @width.setter
     def width(self, value: float) -> None:
-        self._run.drive_to("width", number("width", value), 0.0)
+        self._lead("width", value)
 
     @property
     def force_amplitude(self) -> float:
@@ -51,7 +65,7 @@ class Drive(State):
 
     @force_amplitude.setter
     def force_amplitude(self, value: float) -> None:
-        self._run.drive_to("force_amplitude", number("force_amplitude", value), 0.0)
+        self._lead("force_amplitude", value)
 
     @property
     def strain_rate(self) -> float:
@@ -69,4 +83,4 @@ class Drive(State):
 
     @strain_rate.setter
     def strain_rate(self, value: float) -> None:
-        self._run.drive_to("strain_rate", number("strain_rate", value), 0.0)
+        self._lead("strain_rate", value)

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
 
 import numpy as np
 import numpy.typing as npt
@@ -43,6 +44,7 @@ class Made(Output):
         self._running = threading.Lock()
         self._told = set()
         self._writers = []
+        self._views = WeakSet()
 
     @classmethod
     def _of(cls, run: _core.Run) -> Self:

@@ -14,6 +14,7 @@ from ._writers import Writer
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
+    from ._view import View
 
 
 class Output(Drive):
@@ -191,6 +192,44 @@ class Output(Drive):
         elif path is not None:
             picture.save(path)
         return picture
+
+    def view(self, height: int = 680) -> View:
+        """The page of the viewer as a widget of a notebook, which shows this simulation as it goes on and steers it.
+
+        Whatever advances the simulation is seen on the page. Its sliders lead the drive of the simulation within a quarter
+        of a period, and its play button advances it while no cell runs. Nothing is asked of any server. What only a viewer
+        of its own can do is not there: to go back in time, and links.
+
+        Parameters
+        ----------
+        height : int
+            Height in the notebook in pixels.
+
+        Returns
+        -------
+        View
+            A widget with the traits ``width``, ``force_amplitude``, ``strain_rate``, ``playing`` and ``speed``.
+
+        Raises
+        ------
+        ImportError
+            Where anywidget is not installed: ``pip install 'peristalsis[widget]'``.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, width=2.6, seed=1)
+        >>> view = sim.view()
+        >>> view.width
+        2.6
+        """
+        try:
+            from ._view import View
+        except ImportError as error:
+            if error.name not in ("anywidget", "ipywidgets", "traitlets"):
+                raise
+            raise ImportError("view() needs anywidget: pip install 'peristalsis[widget]'", name=error.name) from error
+        return View(cast("Simulation", self), height)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a snapshot to a file, whole or not at all, over an older one; `Simulation.load` goes on from it, and so does

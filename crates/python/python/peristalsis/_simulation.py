@@ -207,6 +207,8 @@ class Simulation(Made):
                 finally:
                     for writer in files:
                         writer._synchronize()
+                    for view in tuple(self._views):
+                        view._show()
         finally:
             self._running.release()
 
@@ -220,6 +222,8 @@ class Simulation(Made):
                 if due == now:
                     it._fire(self)
             display.update(now - first)
+            for view in tuple(self._views):
+                view._seen()
 
     def ramp(
         self,

@@ -109,7 +109,7 @@ impl Instructions {
             Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
             Self::Neon => cfg!(target_arch = "aarch64"),
             Self::Simd128 => cfg!(target_feature = "simd128"),
-            Self::Plain => true,
+            Self::Plain => cfg!(not(all(feature = "small", target_feature = "simd128"))),
             #[cfg(not(target_arch = "x86_64"))]
             Self::Avx512 | Self::Avx2 => false,
         }
@@ -127,6 +127,7 @@ impl Instructions {
             Self::Neon => work.run::<Neon>(),
             #[cfg(target_feature = "simd128")]
             Self::Simd128 => work.run::<Simd128>(),
+            #[cfg(not(all(feature = "small", target_feature = "simd128")))]
             Self::Plain => work.run::<Plain>(),
             _ => Self::widest().run(work),
         }

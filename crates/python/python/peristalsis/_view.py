@@ -1,0 +1,163 @@
+"""The page of the viewer as a widget of a notebook."""
+
+from __future__ import annotations
+
+import json
+import time as clock
+from typing import TYPE_CHECKING, Any
+
+import anywidget
+import traitlets
+
+from . import _core
+from ._core import ConfigurationError, DivergedError
+
+if TYPE_CHECKING:
+    from ._simulation import Simulation
+
+#: Seconds of computing for a frame; and, at least, from frame to frame while the interpreter computes and hears nothing.
+_FRAME, _APART = 0.033, 0.1
+#: Seconds that a frame may have come late and still be made up for.
+_LATE = 0.15
+_DRIVE = ("width", "force_amplitude", "strain_rate")
+_HTML, _STYLE, _SCRIPT, _WIDGET = _core.page()
+
+
+class View(anywidget.AnyWidget):
+    """The page of the viewer, which shows a simulation and steers it; `Simulation.view` makes one.
+
+    What is changed here moves the sliders of the page and the simulation, and the other way round. Parameters of the
+    drive that are moved here or on the page reach their value within a quarter of a period, so that no wall jumps.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        What is shown.
+    height : int
+        Height in the notebook in pixels.
+
+    Attributes
+    ----------
+    width, force_amplitude, strain_rate : float or None
+        Where the drive is led to, as on the sliders [d, m d t^-2, 1/t]; None where it has no such parameter.
+    playing : bool
+        Whether the simulation goes on by itself, while no cell runs.
+    speed : float or None
+        How fast, in periods a second at most; None is as fast as it can.
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, width=2.6, seed=1)
+    >>> view = sim.view()
+    >>> view.width = 2.5
+    >>> sim.run(periods=1)
+    >>> sim.width, view.width
+    (2.5, 2.5)
+    """
+
+    _esm = _WIDGET
+    _page = traitlets.List(traitlets.Unicode(), [_HTML, _STYLE, _SCRIPT]).tag(sync=True)
+    height = traitlets.Int(680).tag(sync=True)
+    width = traitlets.Float(None, allow_none=True).tag(sync=True)
+    force_amplitude = traitlets.Float(None, allow_none=True).tag(sync=True)
+    strain_rate = traitlets.Float(None, allow_none=True).tag(sync=True)
+    playing = traitlets.Bool(False).tag(sync=True)
+    speed = traitlets.Float(1.0, allow_none=True).tag(sync=True)
+
+    def __init__(self, simulation: Simulation, height: int = 680) -> None:
+        self._simulation = simulation
+        self._onlooker = _core.Onlooker()
+        #: Whether traits are being set to what the simulation does, rather than by somebody.
+        self._telling = True
+        self._shown = self._went = 0.0
+        #: Steps left over from earlier frames, and seconds of a step.
+        self._due, self._step_seconds = 0.0, 0.0
+        super().__init__(height=height, **self._aims())
+        self._telling = False
+        self.on_msg(self._hear)
+        simulation._views.add(self)
+
+    def _aims(self) -> dict[str, float | None]:
+        return dict(zip(_DRIVE, self._onlooker.aims(self._simulation._run), strict=True))
+
+    @traitlets.observe(*_DRIVE)
+    def _steer(self, change: Any) -> None:
+        if self._telling:
+            return
+        try:
+            if change.old is None or change.new is None:
+                raise ConfigurationError(f"drive.{change.name} is no parameter of this drive")
+            self._command({"type": "steer", "parameter": change.name, "value": change.new})
+        finally:
+            self._show()
+
+    @traitlets.observe("playing", "speed")
+    def _play(self, change: Any) -> None:
+        self._went, self._due = clock.monotonic(), 0.0
+        self._show()
+
+    def _command(self, command: dict[str, Any]) -> None:
+        self._onlooker.command(self._simulation._run, json.dumps(command))
+
+    def _hear(self, _: object, message: Any, buffers: object) -> None:
+        """A message of the page that is no trait; what the page cannot ask of a simulation changes nothing."""
+        kind = message.get("type") if isinstance(message, dict) else message
+        if kind == "ready":
+            self.send({"text": self._onlooker.welcome(self._simulation._run, "simulation")})
+        elif kind == "next" and not self.playing:
+            return
+        elif kind == "next":
+            self._go_on()
+        elif kind == "step":
+            self.playing = False
+            each = self._simulation._run.steps_per_sample
+            self._advance(each - self._simulation.steps % each)
+        elif kind == "contacts":
+            self._command(message)
+        self._show()
+
+    def _go_on(self) -> None:
+        """Advances by what is due since the last frame, as far as it can be computed in time."""
+        now = clock.monotonic()
+        passed, self._went = min(now - self._went, _LATE), now
+        most = max(1, int(_FRAME / self._step_seconds)) if self._step_seconds else 1
+        steps = most
+        if self.speed is not None:
+            # A static wave has no period: its time is counted in t.
+            rate = self._simulation._run.driven("strain_rate") or 1.0
+            self._due += self.speed * passed / rate / self._simulation.configuration.time_step
+            steps = min(most, int(self._due))
+            self._due = min(self._due - steps, most)
+        if steps:
+            self._advance(steps)
+            self._step_seconds = (clock.monotonic() - now) / steps
+
+    def _advance(self, steps: int) -> None:
+        simulation = self._simulation
+        if simulation._running.locked():
+            # Another thread runs it, and frames come from there.
+            return
+        try:
+            self._onlooker.follow(simulation._run)
+            simulation._step(steps)
+        except (DivergedError, ConfigurationError) as error:
+            self.playing = False
+            self.send({"text": json.dumps({"type": "problem", "message": str(error)})})
+
+    def _seen(self) -> None:
+        """The simulation has gone on: a frame, where the last one is old enough."""
+        if clock.monotonic() - self._shown >= _APART:
+            self._onlooker.follow(self._simulation._run)
+            self._show()
+
+    def _show(self) -> None:
+        self._shown = clock.monotonic()
+        run = self._simulation._run
+        self.send({}, buffers=[self._onlooker.frame(run, self.playing, self.speed)])
+        self._telling = True
+        try:
+            for name, value in self._aims().items():
+                self.set_trait(name, value)
+        finally:
+            self._telling = False
