@@ -1,19 +1,13 @@
 // What new users met, each as a check, and what the page is to do besides; called by check.mjs.
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
 import { gzipSync } from "node:zlib";
+import { audit } from "./audit.mjs";
 import { widgetChecks } from "./check-widget.mjs";
 
-const AXE = readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
-
-export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pixels, desk, phone, WEB }) {
-  /** What axe-core finds in a page as it is. */
-  async function audit(page, state) {
-    await page.evaluate(AXE);
-    const found = await page.evaluate(async () => (await window.axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes.map((it) => it.html).join(" ").slice(0, 300)}`));
-    assert.deepEqual(found, [], `axe-core finds in ${state}`);
-  }
-
+export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pixels, desk, phone, WEB, program, runs }) {
   const fastest = async (page) => {
     await page.selectOption("#speed", "");
     await page.click("#play");
@@ -273,6 +267,9 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
     await until(page, () => document.querySelectorAll("#charts canvas").length > 0 && document.getElementById("view-heat").ariaPressed === "true");
     await audit(page, "a map of a study");
     await page.click("#view-curves");
+    // No curve joins tubes unlike each other.
+    await choose("wall-stiffness");
+    assert(await page.evaluate(() => new Set(window.study.points.map(({ tube }) => tube)).size > 1));
     for (const name of names) {
       await choose(name.split(" (")[0]);
       await shoot(page, `studies-${name.split(" (")[0]}`);
@@ -283,6 +280,25 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
     await dark.click("#view-heat");
     await audit(dark, "a map of a study, dark");
     await closeDark();
+    end();
+    await checkFigures(browser);
+  }
+
+  /** The figures of a reproduction, in both themes. */
+  async function checkFigures(browser) {
+    const folder = join(runs, "reproduction");
+    const made = spawnSync(program, ["reproduce", "--quick", "--only", "F8", "--for", "2s", "--out", folder, "--quiet"]);
+    assert(existsSync(join(folder, "claims.json")), String(made.stderr));
+    const { address, end } = await serve(folder);
+    for (const colorScheme of ["light", "dark"]) {
+      const { page, close } = await open(browser, address, { ...desk, colorScheme }, () => window.study !== undefined);
+      await until(page, () => !document.getElementById("view-figures").hidden);
+      await page.click("#view-figures");
+      await until(page, () => document.getElementById("view-figures").ariaPressed === "true");
+      await audit(page, `figures, ${colorScheme}`);
+      await shoot(page, `figures-${colorScheme}`);
+      await close();
+    }
     end();
   }
 
@@ -356,5 +372,5 @@ export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pi
   }
 
   return { more: checkMore, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
-    ...widgetChecks({ serve, until, shoot, audit, desk }) };
+    ...widgetChecks({ serve, until, shoot, desk }) };
 }

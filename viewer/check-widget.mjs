@@ -2,6 +2,7 @@
 // Python would compute comes from the program. Called by check.mjs.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
+import { audit } from "./audit.mjs";
 
 const asset = (name) => readFileSync(new URL(`../crates/viewer/assets/${name}`, import.meta.url), "utf8");
 
@@ -26,7 +27,7 @@ async function show({ parts, module }) {
   window.hearers = hearers;
 }
 
-export function widgetChecks({ serve, until, shoot, audit, desk }) {
+export function widgetChecks({ serve, until, shoot, desk }) {
   async function checkWidget(browser) {
     const { address, end } = await serve("frictionless", "--set", "tube.waves=2", "--set", "drive.width=2.6");
     const context = await browser.newContext(desk);

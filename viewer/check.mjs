@@ -12,6 +12,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { parseArgs } from "node:util";
 import { chromium } from "playwright-core";
+import { audit } from "./audit.mjs";
 import { moreChecks } from "./check-more.mjs";
 
 const { values, positionals } = parseArgs({
@@ -199,6 +200,7 @@ async function checkPlaying(browser) {
   assert.match(await page.textContent("#numbers"), /narrowest place w[0-9.]+ d/);
   await pick(page, (x, y) => page.mouse.click(x, y));
   await shoot(page, "recording");
+  await audit(page, "a recording");
 
   // To the end, where it stops, and from the begin again.
   await page.keyboard.press("Escape");
@@ -216,6 +218,7 @@ async function checkPlaying(browser) {
   await until(dark, () => window.viewer.measured.number === 80);
   await dark.waitForTimeout(1200);
   await shoot(dark, "recording-dark");
+  await audit(dark, "a recording, dark");
   await closeDark();
   await checkTouch(browser, address);
   end();
@@ -588,7 +591,7 @@ const browser = await chromium.launch({
   args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
 const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, web: checkWeb, many: measureMany,
-  ...moreChecks({ serve, open, measured, until, shoot, pixels, serveFiles, desk, phone, WEB }) };
+  ...moreChecks({ serve, open, measured, until, shoot, pixels, serveFiles, desk, phone, WEB, program, runs }) };
 try {
   for (const [name, check] of Object.entries(checks)) if (only === undefined || only.split(",").includes(name)) await check(browser);
   console.log("the viewer works");

@@ -41,6 +41,7 @@ use self::avx2::Avx2;
 use self::avx512::Avx512;
 #[cfg(target_arch = "aarch64")]
 use self::neon::Neon;
+#[cfg(not(all(feature = "small", target_feature = "simd128")))]
 use self::plain::Plain;
 #[cfg(target_feature = "simd128")]
 use self::simd128::Simd128;
