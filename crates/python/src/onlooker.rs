@@ -5,10 +5,9 @@ use peristalsis_viewer::page::{SCRIPT, STYLE, TUBE, WIDGET};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::error::{ConfigurationError, of_run};
 use crate::run::Run;
 
-/// What a page has been told of a simulation, and where its sliders lead it.
+/// What a page has been told of a simulation.
 #[pyclass(frozen, module = "peristalsis._core")]
 pub(crate) struct Onlooker {
     inner: Mutex<peristalsis_viewer::Onlooker>,
@@ -27,16 +26,9 @@ impl Onlooker {
         run.look(py, |run| self.inner.lock().welcome(run, title))
     }
 
-    /// Moves a slider, or has contacts sent, as a command in JSON says.
-    fn command(&self, py: Python<'_>, run: &Run, text: &str) -> PyResult<()> {
-        run.look(py, |run| self.inner.lock().command(run, text))
-            .map_err(ConfigurationError::new_err)
-    }
-
-    /// Leads the run to where sliders were moved while it was on its way elsewhere.
-    fn follow(&self, py: Python<'_>, run: &Run) -> PyResult<()> {
-        run.look(py, |run| self.inner.lock().follow(run))
-            .map_err(of_run)
+    /// Sends the contacts of the grains with each frame, or leaves them out.
+    fn show_contacts(&self, py: Python<'_>, shown: bool) {
+        py.detach(|| self.inner.lock().show_contacts(shown));
     }
 
     /// The bytes of the present frame.
@@ -49,11 +41,6 @@ impl Onlooker {
     ) -> Bound<'py, PyBytes> {
         let bytes = run.look(py, |run| self.inner.lock().frame(run, playing, speed));
         PyBytes::new(py, &bytes)
-    }
-
-    /// Where the sliders of width, force amplitude and strain rate lead.
-    fn aims(&self, py: Python<'_>, run: &Run) -> [Option<f64>; 3] {
-        run.look(py, |run| self.inner.lock().aims(run))
     }
 }
 

@@ -11,6 +11,9 @@ from ._state import State
 if TYPE_CHECKING:
     from ._view import View
 
+#: Parameters of the drive, which may change during a run.
+CHANGEABLE = ("width", "force_amplitude", "strain_rate")
+
 
 class Drive(State):
     """Parameters of the drive, which may change during a run; `Simulation` is the public class."""

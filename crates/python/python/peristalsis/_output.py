@@ -196,9 +196,9 @@ class Output(Drive):
     def view(self, height: int = 680) -> View:
         """The page of the viewer as a widget of a notebook, which shows this simulation as it goes on and steers it.
 
-        Whatever advances the simulation is seen on the page. Its sliders lead the drive of the simulation within a quarter
-        of a period, and its play button advances it while no cell runs. Nothing is asked of any server. What only a viewer
-        of its own can do is not there: to go back in time, and links.
+        Whatever advances the simulation is seen on the page. Its sliders set the drive of the simulation, and its
+        play button advances it while no cell runs. Nothing is asked of any server. What only a viewer of its own can do is
+        not there: to go back in time, and links.
 
         Parameters
         ----------

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ._core import ConfigurationError
+from ._drive import CHANGEABLE
 from ._given import number, positive, whole
 from ._loop import Loop, ramp
 from ._made import Made
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
 _PATIENCE = 0.05
 #: Steps that a run has at most.
 _MOST_STEPS = 1e12
-#: Parameters of the drive, which may change during a run.
-CHANGEABLE = ("width", "force_amplitude", "strain_rate")
 
 
 class Simulation(Made):

@@ -11,6 +11,7 @@ import traitlets
 
 from . import _core
 from ._core import ConfigurationError, DivergedError
+from ._drive import CHANGEABLE
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
@@ -19,15 +20,14 @@ if TYPE_CHECKING:
 _FRAME, _APART = 0.033, 0.1
 #: Seconds that a frame may have come late and still be made up for.
 _LATE = 0.15
-_DRIVE = ("width", "force_amplitude", "strain_rate")
 _HTML, _STYLE, _SCRIPT, _WIDGET = _core.page()
 
 
 class View(anywidget.AnyWidget):
     """The page of the viewer, which shows a simulation and steers it; `Simulation.view` makes one.
 
-    What is changed here moves the sliders of the page and the simulation, and the other way round. Parameters of the
-    drive that are moved here or on the page reach their value within a quarter of a period, so that no wall jumps.
+    Its traits, the sliders of the page and the drive of the simulation are one: whichever is changed, the others follow.
+    As where ``sim.width`` is set, the wall is there with the next step.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ class View(anywidget.AnyWidget):
     Attributes
     ----------
     width, force_amplitude, strain_rate : float or None
-        Where the drive is led to, as on the sliders [d, m d t^-2, 1/t]; None where it has no such parameter.
+        The drive, as on the sliders [d, m d t^-2, 1/t]; None where it has no such parameter.
     playing : bool
         Whether the simulation goes on by itself, while no cell runs.
     speed : float or None
@@ -51,9 +51,8 @@ class View(anywidget.AnyWidget):
     >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, width=2.6, seed=1)
     >>> view = sim.view()
     >>> view.width = 2.5
-    >>> sim.run(periods=1)
-    >>> sim.width, view.width
-    (2.5, 2.5)
+    >>> sim.width
+    2.5
     """
 
     _esm = _WIDGET
@@ -73,32 +72,29 @@ class View(anywidget.AnyWidget):
         self._shown = self._went = 0.0
         #: Steps left over from earlier frames, and seconds of a step.
         self._due, self._step_seconds = 0.0, 0.0
-        super().__init__(height=height, **self._aims())
+        super().__init__(height=height, **self._driven())
         self._telling = False
         self.on_msg(self._hear)
         simulation._views.add(self)
 
-    def _aims(self) -> dict[str, float | None]:
-        return dict(zip(_DRIVE, self._onlooker.aims(self._simulation._run), strict=True))
+    def _driven(self) -> dict[str, float | None]:
+        return {name: self._simulation._run.driven(name) for name in CHANGEABLE}
 
-    @traitlets.observe(*_DRIVE)
+    @traitlets.observe(*CHANGEABLE)
     def _steer(self, change: Any) -> None:
         if self._telling:
             return
         try:
-            if change.old is None or change.new is None:
-                raise ConfigurationError(f"drive.{change.name} is no parameter of this drive")
-            self._command({"type": "steer", "parameter": change.name, "value": change.new})
-        finally:
+            setattr(self._simulation, change.name, change.new)
+        except BaseException:
+            # The slider goes back to where the simulation is.
             self._show()
+            raise
 
     @traitlets.observe("playing", "speed")
     def _play(self, change: Any) -> None:
         self._went, self._due = clock.monotonic(), 0.0
         self._show()
-
-    def _command(self, command: dict[str, Any]) -> None:
-        self._onlooker.command(self._simulation._run, json.dumps(command))
 
     def _hear(self, _: object, message: Any, buffers: object) -> None:
         """A message of the page that is no trait; what the page cannot ask of a simulation changes nothing."""
@@ -114,7 +110,7 @@ class View(anywidget.AnyWidget):
             each = self._simulation._run.steps_per_sample
             self._advance(each - self._simulation.steps % each)
         elif kind == "contacts":
-            self._command(message)
+            self._onlooker.show_contacts(bool(message["shown"]))
         self._show()
 
     def _go_on(self) -> None:
@@ -139,7 +135,6 @@ class View(anywidget.AnyWidget):
             # Another thread runs it, and frames come from there.
             return
         try:
-            self._onlooker.follow(simulation._run)
             simulation._step(steps)
         except (DivergedError, ConfigurationError) as error:
             self.playing = False
@@ -148,7 +143,6 @@ class View(anywidget.AnyWidget):
     def _seen(self) -> None:
         """The simulation has gone on: a frame, where the last one is old enough."""
         if clock.monotonic() - self._shown >= _APART:
-            self._onlooker.follow(self._simulation._run)
             self._show()
 
     def _show(self) -> None:
@@ -157,7 +151,7 @@ class View(anywidget.AnyWidget):
         self.send({}, buffers=[self._onlooker.frame(run, self.playing, self.speed)])
         self._telling = True
         try:
-            for name, value in self._aims().items():
+            for name, value in self._driven().items():
                 self.set_trait(name, value)
         finally:
             self._telling = False
