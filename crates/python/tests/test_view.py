@@ -87,7 +87,7 @@ def test_play_advances_the_simulation(sim: Simulation) -> None:
     page.says("next")
     assert (sim.steps, page.frames) == (0, []), "it goes on by itself"
     page.says({"type": "step"})
-    assert sim.steps == sim.configuration["run.steps_per_sample"]
+    assert sim.steps == sim._run.steps_per_sample
     page.moves(speed=None)
     page.moves(playing=True)
     before = sim.steps
@@ -101,11 +101,11 @@ def test_play_advances_the_simulation(sim: Simulation) -> None:
 
 
 def test_writers_get_what_the_play_button_computes(sim: Simulation, tmp_path: Any) -> None:
-    writer = sim.add_writer(tmp_path / "run.lammpstrj", every=20)
+    writer = sim.add_writer(tmp_path / "run.lammpstrj", every="1t")
     page = Page(sim.view())
     for _ in range(3):
         page.says({"type": "step"})
-    assert writer.frames == 1 + sim.steps // 20
+    assert writer.frames == 1 + sim.steps // 20 == 4
 
 
 def test_what_cannot_be_is_refused_and_the_slider_goes_back(sim: Simulation) -> None:
