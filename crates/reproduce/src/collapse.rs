@@ -162,7 +162,7 @@ impl Collapsed {
         let stretch = self.found.stretch;
         let what = match stretch <= MOST_STRETCH {
             true => "collapsed".to_owned(),
-            false => format!("no collapse, points {stretch:.0} times as far as their errors"),
+            false => format!("no collapse ({stretch:.0} errors off)"),
         };
         format!("{what} at *a* = {a}, *b* = {b} (*S* = {quality}, overlap {overlap})")
     }

@@ -10,8 +10,8 @@ use crate::row::{Lattice, Row, Start, grouped, longest};
 use crate::studies::STUDIES;
 use crate::thresholds::MOST_ESCAPED;
 
-/// A wall of spheres of the grains' diameter. Its studies are `branches-NAME`, `divergence-NAME`, `near-NAME` and
-/// `density-NAME`, as far as [`STUDIES`] has them.
+/// A wall of spheres of the grains' diameter. Its studies are `branches-NAME`, `loop-NAME` (what the branches lack about the
+/// loop), `divergence-NAME`, `near-NAME` and `density-NAME`, as far as [`STUDIES`] has them.
 #[derive(Debug)]
 pub(crate) struct Wall {
     /// What the names of its studies end with.
@@ -25,6 +25,7 @@ pub(crate) const WALLS: &[Wall] = &[
     Wall::new("12x16", 12, 16, STAGGERED),
     Wall::new("fine", 24, 26, STAGGERED),
     Wall::new("coarse", 12, 14, STAGGERED),
+    Wall::new("aligned", 12, 14, "aligned"),
 ];
 
 /// The arrangement that a name leaves out.
@@ -135,8 +136,9 @@ impl<'a> Runs<'a> {
 
     /// All strain rates of a wall, ascending; the runs on it in the studies `also` count among the transitions.
     fn all(wall: &Wall, evidence: &'a Evidence, also: &[&str]) -> Result<Vec<Self>> {
-        let branches = wall.rows("branches", evidence);
+        let mut branches = wall.rows("branches", evidence);
         let thresholds = Thresholds::of(branches.iter().copied());
+        branches.extend(wall.rows("loop", evidence));
         let mut times = wall.rows("divergence", evidence);
         times.extend(wall.rows("near", evidence));
         for study in also {
@@ -268,7 +270,7 @@ mod tests {
 
     #[test]
     fn every_study_of_a_wall_has_its_wall() {
-        for kind in ["branches", "divergence", "near", "density"] {
+        for kind in ["branches", "loop", "divergence", "near", "density"] {
             let is_of_kind = |study: &&StudyFile| study.name.starts_with(&format!("{kind}-"));
             for study in STUDIES.iter().filter(is_of_kind) {
                 let name = &study.name[kind.len() + 1..];

@@ -375,3 +375,51 @@ fn runs_near_the_critical_width_are_joined() {
     let exponent = |evidence| value(&examine("F2", evidence), "wall 24 × 26");
     assert_eq!(exponent(&whole), exponent(&parted));
 }
+
+/// Q1 to Q5 have an answer with enough runs, and none with two of each.
+#[test]
+fn questions_of_prescribed_walls_are_answered_by_enough_runs() {
+    let fine = Lattice::FINE;
+    let of_lattices = [12, 14, 16, 20, 24].map(|spheres| {
+        SOURCE.divergence(Lattice {
+            spheres_per_ring: spheres,
+            rings_per_wave: spheres + 2,
+        })
+    });
+    let of_lengths = [5.0, 10.0, 20.0].map(|waves| {
+        let mut rows = SOURCE.divergence(fine);
+        rows.set("waves", waves);
+        rows.only(|_, numbers| numbers["strain_rate"] == 0.1)
+    });
+    let all = |some: &[Rows]| {
+        let mut all = Rows::default();
+        some.iter().for_each(|one| all.extend(one));
+        all
+    };
+    let divergence = SOURCE.divergence(fine);
+    for (id, study, rows) in [
+        ("Q1", "small-strain-rate-fine", SOURCE.branches(fine)),
+        ("Q2", "roughness", all(&of_lattices)),
+        ("Q3", "radius", divergence.clone()),
+        ("Q4", "length", all(&of_lengths)),
+        ("Q5", "divergence-fine", divergence),
+    ] {
+        let found = |rows: &Rows| examine(id, &rows::evidence(&[(study, rows)]));
+        assert_verdict(&found(&rows), Verdict::Answered);
+        let few = rows.only(|_, numbers| numbers["replicate"] < 2.0);
+        assert_verdict(&found(&few), Verdict::Open);
+    }
+}
+
+/// Runs from jammed that a study of their own adds to the branches count for the loop.
+#[test]
+fn runs_of_the_loop_are_joined_to_the_branches() {
+    let all = SOURCE.branches(Lattice::COARSE);
+    let of = |start: &str| all.only(|texts, _| texts["initial_state"] == start);
+    let mut evidence = rows::evidence(&[("branches-coarse", &of("rest"))]);
+    assert_verdict(&examine("F9", &evidence), Verdict::Open);
+    evidence
+        .add_table("loop-coarse", of("jammed").table())
+        .unwrap();
+    assert_verdict(&examine("F9", &evidence), Verdict::Reproduced);
+}

@@ -147,7 +147,7 @@ impl Judged {
     fn why(&self) -> String {
         let how = match self.slower {
             Some(true) => "decreases",
-            Some(false) => "does not always decrease",
+            Some(false) => "does not always fall",
             None => "is not known at every density",
         };
         let hardly = match self.relative_change < HARDLY {

@@ -5,7 +5,7 @@ use peristalsis_analysis::{Family, Transition, fit_lifetime};
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f9.md"));
-const STUDIES: &[&str] = &["branches-*", "jam-lifetime"];
+const STUDIES: &[&str] = &["branches-*", "loop-*", "jam-lifetime"];
 
 pub(super) const CLAIM: Claim = Claim::new("F9", PROSE, STUDIES, examine);
 

@@ -1,16 +1,19 @@
 //! Q12: why the critical width falls as the wave gets faster.
 
+mod drags;
+
 use core::f64::consts::PI;
 
 use super::f7::SLOPE;
 use super::prelude::*;
+use drags::Drags;
 
 const PROSE: Prose = Prose::new(include_str!("q12.md"));
 
 /// Tubes that were computed after the predictions, to test them.
 const TEST: &str = "wall-stiffness";
-/// First those that were there before the predictions; the last two are of waves so slow that grains feel each sphere of the
-/// wall.
+/// First those that were there before the predictions; then two of waves so slow that grains feel each sphere of the wall; the
+/// last two have no critical width.
 const STUDIES: &[&str] = &[
     "restitution",
     "softness",
@@ -21,7 +24,12 @@ const STUDIES: &[&str] = &[
     TEST,
     "small-strain-rate-fine",
     "small-strain-rate-coarse",
+    drags::WAVES,
+    drags::WALL,
 ];
+
+/// So many of them are of tubes with a critical width.
+const TUBES: usize = 9;
 
 fn is_known(study: &str) -> bool {
     STUDIES[..6].contains(&study)
@@ -225,7 +233,7 @@ struct Group {
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut groups, mut all) = (Vec::new(), Vec::new());
-    for study in STUDIES {
+    for study in &STUDIES[..TUBES] {
         let rows = evidence.study(study)?.rows();
         if !rows.is_empty() {
             all.push(behind(&rows, Row::width));
@@ -247,11 +255,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut draft = Draft::of(PROSE);
     let density = density_of_the_source(&predictions[1].constant);
     draft.quantity("density of the source", &[], density);
-    let mut told = Vec::new();
+    let mut words = Vec::new();
     for one in &predictions {
         let name = one.name;
         let [known, tests] = [&known, &tests].map(|tubes| one.within(tubes.iter().copied()));
-        told.push(PROSE.text("told", values!(known, tests, name)));
+        words.push(PROSE.text("told", values!(known, tests, name)));
         if one.constant.error > 0.0 {
             draft.quantity("constant", values!(name), one.constant);
         }
@@ -262,6 +270,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         first.into_iter().chain(cells).collect()
     });
     draft.table("predictions", &[], rows);
+    let drags = Drags::all(evidence)?;
+    let told: Vec<bool> = drags.iter().filter_map(Drags::explains).collect();
+    if !told.is_empty() {
+        let met = told.iter().filter(|met| **met).count();
+        draft.paragraph("measured", values!(met, all = told.len()));
+        draft.table("drags", &[], drags.iter().map(Drags::row));
+    }
     let panels = predictions.iter().map(|one| one.panel(&groups));
     let chart = grid(3, panels).share_y().legend(LegendPlace::Below);
     draft.chart("predictions", &[], chart)?;
@@ -270,7 +285,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         format!("{} has {}", wall.name(), number(density, 2))
     });
     let walls = walls.collect::<Vec<_>>().join(", ");
-    let summary = PROSE.text("summary", values!(density, told = told.join("; "), walls));
+    let summary = PROSE.text("summary", values!(density, told = words.join("; "), walls));
     let verdict = Verdict::answered_if(tests.len() >= LEAST_TESTS);
     Ok(draft.concluded(verdict, summary, statistics, &Q12_NEEDED))
 }

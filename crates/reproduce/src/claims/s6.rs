@@ -12,6 +12,7 @@ const STUDIES: &[&str] = &[
     "elastic-flow",
     "elastic-branches",
     "unjammed-frictionless",
+    "matched-bottlenecks",
     "two-by-two-strain",
     "two-by-two-stress",
 ];
@@ -140,7 +141,13 @@ impl Matched {
                 velocities: [there, here.iter().map(velocity).collect()],
             })
         });
-        matched.collect()
+        let mut matched: Vec<Self> = matched.collect();
+        // Two bottlenecks that match one another have the same frictional runs, and count once.
+        matched.dedup_by(|next, kept| {
+            let apart = (next.bottleneck - kept.bottleneck).abs();
+            next.strain_rate == kept.strain_rate && apart <= MATCHED
+        });
+        matched
     }
 
     /// Distance that [`WITHIN_A_MODEL`] of the pairs of runs of one model do not exceed; `None` without a pair.
@@ -212,6 +219,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut without = evidence.study("two-by-two-strain")?.rows();
     without.retain(is_frictionless);
     without.extend(prescribed.rows());
+    without.extend(evidence.study("matched-bottlenecks")?.rows());
     for rows in [&mut with_friction, &mut without] {
         rows.retain(counts);
     }

@@ -10,9 +10,9 @@ use crate::report::markdown::table;
 use crate::report::markup::markdown;
 use crate::report::{Report, page};
 
-/// Numbers and rows of a table that a section shows at most; all are in the page and in `claims.json`.
-const MOST_NUMBERS: usize = 8;
-const MOST_ROWS: usize = 15;
+/// Numbers and cells of a table that a section shows at most; all are in the page and in `claims.json`.
+const MOST_NUMBERS: usize = 4;
+const MOST_CELLS: usize = 45;
 
 /// What stands above the table.
 const OPENING: &str = include_str!("document.md");
@@ -122,65 +122,76 @@ fn section(examination: &Examination, file: Option<&str>, figures: &str) -> Stri
     let verdict = finding.verdict.name();
     add(&format!("**{verdict}** – {}", markdown(&summary)));
     if let (Some(file), Some(figure)) = (file, finding.figures.first()) {
-        // A bracket would end the caption.
-        let caption = markdown(&figure.caption).replace(['[', ']'], " ");
+        // Its first sentence, which stands for the picture where none is seen; a bracket would end it.
+        let caption = figure
+            .caption
+            .split_once(". ")
+            .map_or(&*figure.caption, |(first, _)| first);
+        let caption = markdown(caption).replace(['[', ']'], " ");
         add(&format!("![{caption}]({figures}/{file}.svg)"));
     }
     for paragraph in &finding.paragraphs {
         add(&markdown(paragraph));
     }
-    let walls = finding.walls.iter().map(|wall| {
-        let (name, verdict) = (markdown(&wall.wall), wall.verdict.name());
-        let (number, why) = (markdown(&wall.number), markdown(&wall.why));
-        format!("- {name}: **{verdict}**; {number}; {why}\n")
-    });
-    add_list(&mut text, "On each wall:", walls.collect());
-    text.push_str(&numbers(finding));
+    if let Some(found) = digest(finding) {
+        if !found.caption.is_empty() {
+            add(&found.caption);
+        }
+        add(table(&found).trim_end());
+    }
     let weaknesses = finding.weaknesses.iter();
-    let weaknesses = weaknesses.map(|weakness| format!("- {}\n", markdown(weakness)));
-    add_list(&mut text, "Weaknesses:", weaknesses.collect());
+    let weaknesses: String = weaknesses
+        .map(|weakness| format!("- {}\n", markdown(weakness)))
+        .collect();
+    if !weaknesses.is_empty() {
+        text.push_str(&format!("\nWeaknesses:\n\n{weaknesses}"));
+    }
     text
 }
 
-/// Adds a list below a line, unless it is empty.
-fn add_list(text: &mut String, line: &str, list: String) {
-    if !list.is_empty() {
-        text.push_str(&format!("\n{line}\n\n{list}"));
-    }
-}
-
-/// The first table, unless it is large, and the numbers of which the source gives a value; without a table the most important
-/// numbers.
-fn numbers(finding: &Finding) -> String {
-    let row = |quantity: &Quantity| {
-        let ours = quantity.ours.as_ref();
-        let unit = match &*quantity.unit {
-            "" => String::new(),
-            unit => format!(" [{unit}]"),
-        };
-        let cells = [
-            format!("{}{unit}", quantity.name),
-            ours.map_or_else(|| "not determined".to_owned(), ToString::to_string),
-            quantity.source.map_or_else(String::new, plain),
-        ];
-        cells.map(|cell| markdown(&cell)).to_vec()
+/// The table of a section: what the walls show; or the first table, unless it is large; or the most important numbers.
+fn digest(finding: &Finding) -> Option<ReportTable> {
+    let first = finding.tables.first();
+    let small = first.filter(|one| (1..=MOST_CELLS).contains(&(one.head.len() * one.rows.len())));
+    let found = if !finding.walls.is_empty() {
+        let rows = finding.walls.iter().map(|wall| {
+            let verdict = wall.verdict.name().to_owned();
+            vec![
+                wall.wall.clone(),
+                verdict,
+                wall.number.clone(),
+                wall.why.clone(),
+            ]
+        });
+        ReportTable::new("", ["wall", "verdict", "the number", "more"], rows)
+    } else if let Some(small) = small {
+        small.clone()
+    } else {
+        let quantities = finding.quantities.iter().take(MOST_NUMBERS);
+        ReportTable::new("", ["number", "ours", "source"], quantities.map(cells))
     };
-    let small = |one: &&ReportTable| !one.head.is_empty() && one.rows.len() <= MOST_ROWS;
-    let shown = finding.tables.first().filter(small);
-    let quantities = finding.quantities.iter();
-    let quantities = quantities.filter(|one| shown.is_none() || one.source.is_some());
-    let rows: Vec<Vec<String>> = quantities.take(MOST_NUMBERS).map(row).collect();
-    let mut text = String::new();
-    if !rows.is_empty() {
-        let head = ["number", "ours", "source"];
-        text.push_str(&format!("\n{}", table(&ReportTable::new("", head, rows))));
-    }
-    if let Some(first) = shown {
-        let marked = |cells: &[String]| cells.iter().map(|cell| markdown(cell)).collect();
-        let rows = first.rows.iter().map(|cells| marked(cells));
-        let head: Vec<String> = marked(&first.head);
-        let marked = table(&ReportTable::new("", head, rows));
-        text.push_str(&format!("\n{}\n\n{marked}", markdown(&first.caption)));
-    }
-    text
+    (!found.rows.is_empty()).then(|| {
+        let marked = |cells: &Vec<String>| -> Vec<String> {
+            cells.iter().map(|cell| markdown(cell)).collect()
+        };
+        ReportTable::new(
+            &markdown(&found.caption),
+            marked(&found.head),
+            found.rows.iter().map(marked),
+        )
+    })
+}
+
+/// A number with its unit, ours, and that of the source.
+fn cells(quantity: &Quantity) -> Vec<String> {
+    let ours = quantity.ours.as_ref();
+    let unit = match &*quantity.unit {
+        "" | "1" => String::new(),
+        unit => format!(" [{unit}]"),
+    };
+    vec![
+        format!("{}{unit}", quantity.name),
+        ours.map_or_else(|| "not determined".to_owned(), ToString::to_string),
+        quantity.source.map_or_else(String::new, plain),
+    ]
 }

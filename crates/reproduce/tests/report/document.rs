@@ -62,7 +62,7 @@ fn walls_stand_across_with_the_claims_that_each_meets() {
     let met = rows.iter().find(|row| row.starts_with("| claims met"));
     assert_eq!(met.unwrap(), "| claims met | | 1 of 1 | 0 of 1 | | |");
     let text = report.markdown("pictures");
-    assert!(text.contains("\n- 24 × 26: **reproduced**; α = 1.1 ± 0.2; so\n"));
+    assert!(text.contains("\n| 24 × 26 | reproduced | α = 1.1 ± 0.2 | so |\n"));
 }
 
 #[test]
