@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 use peristalsis_physics::contact::ContactModel;
 use peristalsis_physics::method::{InitialState, Integrator, Kernel};
 use peristalsis_physics::wall::{
-    Arrangement, Contraction, DriveAngle, ElasticNetwork, SegmentDrive, Segments, WaveDirection,
-    Waveform,
+    Arrangement, Contraction, DriveAngle, ElasticNetwork, RadiusTable, SegmentDrive, Segments,
+    WaveDirection, Waveform,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -187,6 +187,14 @@ pub struct Drive {
     /// Shape of the wave.
     #[serde(default)]
     pub waveform: WaveformName,
+    /// Phases of the points of waveform = "table" in cycles, ascending from 0 on; 3 to 128 of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-unit" = "1", "items" = {"type": "number", "minimum": 0, "exclusiveMaximum": 1}))]
+    pub phases: Vec<f64>,
+    /// Radius at each of them. Their shape alone counts: the largest becomes tube.radius, the least half of drive.width.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-unit" = "1", "items" = {"type": "number", "minimum": 0, "maximum": 1e6}))]
+    pub radii: Vec<f64>,
     /// The segments of waveform = "segments", otherwise `None`.
     #[serde(flatten)]
     pub segments: Option<SegmentDrive>,
@@ -217,18 +225,20 @@ pub enum WaveformName {
     Bolus,
     /// A round roller pressed into the tube over half of each wavelength; elsewhere the tube is straight, of radius a.
     Roller,
+    /// A wave whose shape a table gives: drive.table, or drive.phases and drive.radii. Strain control.
+    Table,
     /// Segments of finite length that close and open in turn; an open one is straight, of radius a. Strain control.
     Segments,
 }
 
 impl WaveformName {
-    /// The wave of this name; `None` for segments, which do not keep a shape.
+    /// The wave of this name; `None` for one that is more than a name.
     pub fn travelling(self) -> Option<Waveform> {
         match self {
             Self::Sine => Some(Waveform::Sine),
             Self::Bolus => Some(Waveform::Bolus),
             Self::Roller => Some(Waveform::Roller),
-            Self::Segments => None,
+            Self::Table | Self::Segments => None,
         }
     }
 }
@@ -237,9 +247,10 @@ impl Drive {
     /// How a wavelength of the tube is squeezed.
     pub fn contraction(&self) -> Contraction {
         let segments = self.segments.as_ref().and_then(Segments::new);
-        match segments {
-            Some(segments) => Contraction::Segments(segments),
-            None => self.waveform.travelling().unwrap_or_default().into(),
+        match (segments, RadiusTable::new(&self.phases, &self.radii)) {
+            (Some(segments), _) => Contraction::Segments(segments),
+            (None, Some(table)) => Contraction::Table(table),
+            (None, None) => self.waveform.travelling().unwrap_or_default().into(),
         }
     }
 

@@ -37,6 +37,8 @@ pub(crate) const DAMPINGS: [&[&str]; 2] = [
 /// Where the wall spheres of arrangement = "file" come from; at most one is given.
 const SPHERES: &[&str] = &["tube.file", "tube.places"];
 
+/// Where the points of waveform = "table" come from; at most one is given.
+const POINTS: &[&str] = &["drive.table", "drive.phases"];
 /// Keys that give gravity, of which at most one is given.
 const GRAVITIES: &[&str] = &["body.gravity", "units.acceleration"];
 
@@ -45,7 +47,7 @@ pub(crate) fn exclusive_groups() -> impl Iterator<Item = &'static [&'static str]
     ALTERNATIVES
         .into_iter()
         .chain(DAMPINGS)
-        .chain([SPHERES, GRAVITIES])
+        .chain([SPHERES, POINTS, GRAVITIES])
 }
 
 /// Configuration of one simulation of grains in a peristaltic tube.
@@ -121,6 +123,11 @@ pub(crate) struct ContactKeys {
 pub(crate) struct DriveKeys {
     #[serde(flatten)]
     pub(crate) drive: Drive,
+    /// Table of waveform = "table" instead of phases and radii: CSV with the columns phase (cycles) and radius, one point a
+    /// line. Its path is that from the configuration file, or from where the program runs.
+    #[serde(rename = "table")]
+    #[schemars(extend("default" = null))]
+    pub(crate) _table: Option<String>,
     /// Amplitude b of the radius R = a + b g((c t + z)/lambda), g the waveform, at most a; strain control.
     #[schemars(extend("x-unit" = "d", "minimum" = 0))]
     pub(crate) amplitude: Option<f64>,

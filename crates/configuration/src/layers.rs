@@ -66,6 +66,9 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
     for (name, _) in segments["properties"].as_object().into_iter().flatten() {
         waveform.owns("segments", format!("drive.{name}"));
     }
+    for name in ["table", "phases", "radii"] {
+        waveform.owns("table", format!("drive.{name}"));
+    }
     switches.push(waveform);
     switches
 });

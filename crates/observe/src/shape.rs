@@ -5,6 +5,10 @@ use peristalsis_physics::wall::{Lattice, RadiusWave};
 
 /// Radius of the tube as a function of z, to the centres of the wall spheres.
 #[derive(Clone, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a tube has one, and asks it by reference"
+)]
 pub enum TubeShape {
     /// A prescribed wall: its wave, and how many wavelengths it has run.
     Wave(RadiusWave, f64),

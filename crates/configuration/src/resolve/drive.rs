@@ -1,7 +1,8 @@
 //! The drive: alternatives resolved to width and strain rate.
 
 use super::{Context, plain, schedules};
-use peristalsis_physics::wall::{LONGEST_CYCLE, SegmentDrive, Segments};
+use peristalsis_physics::wall::table::MOST_POINTS;
+use peristalsis_physics::wall::{LONGEST_CYCLE, RadiusTable, SegmentDrive, Segments};
 
 use crate::configuration::{Control, Drive, Tube, WaveformName};
 use crate::error::ProblemKind;
@@ -28,6 +29,7 @@ pub(super) fn drive(
     drive.strain_rate = strain_rate + 0.0;
     drive.body_force += 0.0;
     drive.segments = segments(&drive, tube, context)?;
+    check_table(&drive, context)?;
     drive.schedules = schedules::schedules(written, &drive, tube, context)?;
     Some(drive)
 }
@@ -82,6 +84,34 @@ fn segments(drive: &Drive, tube: &Tube, context: &mut Context<'_>) -> Option<Opt
         );
     }
     Some(Some(segments))
+}
+
+/// Whether the table of a wave that one gives is a curve.
+fn check_table(drive: &Drive, context: &mut Context<'_>) -> Option<()> {
+    if drive.waveform != WaveformName::Table {
+        return Some(());
+    }
+    let kind = ProblemKind::Inconsistent;
+    if let Control::Stress { .. } = drive.control {
+        return context.refuse(
+            kind,
+            &["drive.waveform", "drive.control"],
+            "a table sets the radius of the tube, and under stress control nothing does".into(),
+            "drive.control = \"strain\", or the waveform \"sine\", \"bolus\" or \"roller\"".into(),
+        );
+    }
+    if RadiusTable::new(&drive.phases, &drive.radii).is_none() {
+        let (phases, radii) = (drive.phases.len(), drive.radii.len());
+        return context.refuse(
+            kind,
+            &["drive.phases", "drive.radii", "drive.waveform"],
+            format!("{phases} phases and {radii} radii that are no curve over a wavelength"),
+            format!(
+                "drive.table, or drive.phases and drive.radii: 3 to {MOST_POINTS} phases, ascending from 0 to below 1, and a radius each, not all alike"
+            ),
+        );
+    }
+    Some(())
 }
 
 /// w = 2 (a - b), between 0 and 2 a.

@@ -1,4 +1,4 @@
-//! Wall spheres whose places the user gives.
+//! Numbers that the user gives in a file: places of wall spheres, the shape of a wave.
 
 use std::path::Path;
 
@@ -8,31 +8,62 @@ use crate::document::{self, Entry, Item, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
 use crate::source::{Origin, SourceKind};
 
-/// Columns of the table: angle \[rad\] and place along the tube \[d\].
-const COLUMNS: &str = "angle,place";
+/// A key that names a file of two columns, and the keys that take its numbers.
+struct FileKey {
+    table: &'static str,
+    name: &'static str,
+    columns: &'static str,
+    into: [&'static str; 2],
+    help: &'static str,
+}
 
-/// Reads the file of `tube.file`, if there is one, into `tube.angles` and `tube.places`: from then on a run needs it no more.
+const FILES: [FileKey; 2] = [
+    FileKey {
+        table: "tube",
+        name: "file",
+        columns: "angle,place",
+        into: ["angles", "places"],
+        help: "then a line a sphere: its angle [rad] and its place z [d]",
+    },
+    FileKey {
+        table: "drive",
+        name: "table",
+        columns: "phase,radius",
+        into: ["phases", "radii"],
+        help: "then a line a point: its phase, from 0 to below 1, and the radius there",
+    },
+];
+
+/// Reads the files that keys name into the keys that take their numbers: from then on a run needs the files no more.
 pub(super) fn read(table: &mut Table, problems: &mut Problems) {
-    let Some(Entry { item, .. }) = document::entry(table, "tube.file") else {
+    for file in &FILES {
+        read_one(file, table, problems);
+    }
+}
+
+fn read_one(file: &FileKey, table: &mut Table, problems: &mut Problems) {
+    let path = format!("{}.{}", file.table, file.name);
+    let Some(Entry { item, .. }) = document::entry(table, &path) else {
         return;
     };
     let Node::Text(name) = &item.node else { return };
     let origin = item.origin.clone();
-    let columns = match text_of(name, &origin).and_then(|text| columns_of(&text)) {
+    let columns = match text_of(name, &origin).and_then(|text| columns_of(&text, file.columns)) {
         Ok(columns) => columns,
         Err(message) => {
-            let message = format!("tube.file = {name:?}: {message}");
+            let message = format!("{path} = {name:?}: {message}");
             let problem = Problem::new(ProblemKind::Inconsistent, message)
-                .key("tube.file")
+                .key(path)
                 .at(&origin, "this file")
-                .help(format!("a first line {COLUMNS}, then a line a sphere: its angle [rad] and its place z [d]"));
+                .help(format!("a first line {}, {}", file.columns, file.help));
             return problems.push(problem);
         }
     };
-    let Some(Node::Table(tube)) = table.get_mut("tube").map(|entry| &mut entry.item.node) else {
+    let Some(Node::Table(keys)) = table.get_mut(file.table).map(|entry| &mut entry.item.node)
+    else {
         return;
     };
-    for (key, numbers) in ["angles", "places"].into_iter().zip(columns) {
+    for (key, numbers) in file.into.into_iter().zip(columns) {
         let item = |node| Item {
             origin: origin.clone(),
             node,
@@ -40,7 +71,7 @@ pub(super) fn read(table: &mut Table, problems: &mut Problems) {
         let numbers = numbers.into_iter().map(|number| item(Node::Float(number)));
         let item = item(Node::Array(numbers.collect()));
         let key_origin = origin.clone();
-        tube.insert(
+        keys.insert(
             key.to_owned(),
             Entry {
                 key: key_origin,
@@ -62,21 +93,21 @@ fn text_of(name: &str, origin: &Origin) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| error.to_string())
 }
 
-/// Angles and places.
-fn columns_of(text: &str) -> Result<[Vec<f64>; 2], String> {
+/// The two columns of a table under this first line.
+fn columns_of(text: &str, names: &str) -> Result<[Vec<f64>; 2], String> {
     let mut columns = [Vec::new(), Vec::new()];
     let lines = text.lines().map(str::trim).enumerate();
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let heading = lines.next().map_or("", |(_, line)| line);
-    if heading.replace([' ', '"'], "") != COLUMNS {
-        return Err(format!("its first line is {heading:?}, not {COLUMNS}"));
+    if heading.replace([' ', '"'], "") != names {
+        return Err(format!("its first line is {heading:?}, not {names}"));
     }
     for (number, line) in lines {
         let mut values = line.split(',').map(|value| value.trim().parse::<f64>());
         match (values.next(), values.next(), values.next()) {
-            (Some(Ok(angle)), Some(Ok(place)), None) if (angle + place).is_finite() => {
-                columns[0].push(angle);
-                columns[1].push(place);
+            (Some(Ok(one)), Some(Ok(other)), None) if (one + other).is_finite() => {
+                columns[0].push(one);
+                columns[1].push(other);
             }
             _ => return Err(format!("line {} is {line:?}, not two numbers", number + 1)),
         }

@@ -202,6 +202,65 @@ fn segments_and_what_is_no_cycle_of_them() {
 }
 
 #[test]
+fn a_wave_from_a_table() {
+    let folder = std::env::temp_dir().join(format!("peristalsis-table-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = folder.join("shape.csv");
+    std::fs::write(
+        &file,
+        "# measured\nphase, radius\n0, 15\n0.25, 15\n0.5, 12\n0.75, 9\n",
+    )
+    .unwrap();
+    let name = format!("drive.table={:?}", file.to_str().unwrap());
+    let (waveform, lists) = (
+        "drive.waveform=table",
+        [
+            "drive.phases=[0, 0.25, 0.5, 0.75]",
+            "drive.radii=[15, 15, 12, 9]",
+        ],
+    );
+    let read_in = preset("frictionless", &[waveform, &name]);
+    let typed = preset("frictionless", &[waveform, lists[0], lists[1]]);
+    // The numbers are the run's identity, and its record needs the file no more.
+    assert_eq!(read_in.physics_hash(), typed.physics_hash());
+    std::fs::remove_file(&file).unwrap();
+    let record = Configuration::from_toml("record", &read_in.to_toml()).unwrap();
+    assert_eq!(record.physics_hash(), read_in.physics_hash());
+    let other = preset(
+        "frictionless",
+        &[waveform, lists[0], "drive.radii=[15, 15, 11, 9]"],
+    );
+    assert_ne!(other.physics_hash(), typed.physics_hash());
+    for (settings, key, message) in [
+        (vec![waveform, &name], "drive.table", "No such file"),
+        (vec![waveform], "drive.phases", "0 phases and 0 radii"),
+        (
+            vec![waveform, lists[0]],
+            "drive.phases",
+            "4 phases and 0 radii",
+        ),
+        (
+            vec![
+                waveform,
+                "drive.phases=[0.5, 0, 0.7]",
+                "drive.radii=[1, 2, 1]",
+            ],
+            "drive.phases",
+            "no curve",
+        ),
+        (vec![lists[0]], "drive.phases", "belongs to drive.waveform"),
+    ] {
+        let found = only_problem(read(None, Some("frictionless"), &settings));
+        assert_eq!(found.key.as_deref(), Some(key), "{found:?}");
+        assert!(found.message.contains(message), "{found:?}");
+    }
+    std::fs::write(&file, "phase,radius\n0, 15\n0.25\n").unwrap();
+    let found = only_problem(read(None, Some("frictionless"), &[waveform, &name]));
+    assert!(found.message.contains("line 3"), "{found:?}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
 fn waveforms_by_name() {
     for (name, waveform) in [
         ("sine", WaveformName::Sine),

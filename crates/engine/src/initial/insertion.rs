@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use glam::DVec3;
 use peristalsis_physics::method::InitialState;
-use peristalsis_physics::wall::RadiusWave;
+use peristalsis_physics::wall::{Contraction, RadiusWave};
 use rand_chacha::ChaCha8Rng;
 
 use super::packing::{Packing, uniform};
@@ -90,7 +90,7 @@ impl<'a> Region<'a> {
 /// Axial position of the middle of the belly, to a thousandth of a wavelength.
 fn belly(wave: &RadiusWave, cycles: f64) -> f64 {
     let wavelength = wave.wavelength;
-    if wave.contraction.largest() == 0.0 {
+    if wave.contraction.largest() == 0.0 && !matches!(wave.contraction, Contraction::Table(_)) {
         // Straight but for the squeeze: half way from throat to throat, at phase 1/4.
         let place = wave.heading * (cycles - 0.25);
         return (place - place.floor()) * wavelength;

@@ -21,6 +21,10 @@ use crate::bodies::{Bodies, Sphere};
 
 /// The wall of a simulation.
 #[derive(Clone, Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a tube has one, and asks it by reference"
+)]
 pub enum Wall {
     /// Spheres that move as prescribed (strain control); found by arithmetic, never stored.
     Prescribed(PrescribedWall),

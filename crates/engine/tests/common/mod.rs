@@ -19,7 +19,7 @@ pub(crate) use peristalsis_physics::contact::{
     ViscoelasticHertz,
 };
 pub(crate) use peristalsis_physics::wall::{
-    Contraction, Lattice, Schedule, SegmentDrive, Segments, Waveform,
+    Contraction, Lattice, RadiusTable, Schedule, SegmentDrive, Segments, Waveform,
 };
 
 pub(crate) use self::apart::Apart;
@@ -124,6 +124,12 @@ pub(crate) fn segments() -> Contraction {
         edge: 0.4,
     };
     Contraction::Segments(Segments::new(&drive).expect("a cycle"))
+}
+
+/// A wave that a table gives.
+pub(crate) fn tabled() -> Contraction {
+    let table = RadiusTable::new(&[0.0, 0.2, 0.35, 0.6, 0.9], &[1.0, 0.9, 0.4, 0.7, 1.0]);
+    Contraction::Table(table.expect("a curve"))
 }
 
 /// A strain-controlled tube of any waveform that follows schedules.

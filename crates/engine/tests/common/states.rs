@@ -270,6 +270,7 @@ fn driven(
             Waveform::Bolus.into(),
             Waveform::Roller.into(),
             segments(),
+            tabled(),
         ]),
         numbers.one_of(&[1.0, -1.0]),
         numbers.schedule(amplitude, time_step),

@@ -5,6 +5,7 @@ pub mod elastic;
 pub mod lattice;
 pub mod schedule;
 pub mod segments;
+pub mod table;
 pub mod wave;
 pub mod waveform;
 
@@ -13,5 +14,6 @@ pub use elastic::{DriveAngle, ElasticNetwork, NetForce, Tethers};
 pub use lattice::{Lattice, WallSphere};
 pub use schedule::Schedule;
 pub use segments::{LONGEST_CYCLE, SegmentDrive, Segments, Squeeze};
+pub use table::RadiusTable;
 pub use wave::{Contraction, RadiusWave, Ring, WaveDirection};
 pub use waveform::Waveform;

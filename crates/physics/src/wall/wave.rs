@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Segments, Squeeze, Waveform};
+use super::{RadiusTable, Segments, Squeeze, Waveform};
 
 /// Which way the wave runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -17,10 +17,16 @@ pub enum WaveDirection {
 }
 
 /// How a wavelength of the tube is squeezed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "a tube has one, and asks it by reference"
+)]
 pub enum Contraction {
     /// By a wave that keeps its shape.
     Wave(Waveform),
+    /// By a wave whose shape a table gives.
+    Table(RadiusTable),
     /// By segments in turn.
     Segments(Segments),
 }
@@ -36,7 +42,7 @@ impl Contraction {
     pub fn largest(&self) -> f64 {
         match self {
             Self::Wave(waveform) => waveform.largest(),
-            Self::Segments(_) => 0.0,
+            Self::Table(_) | Self::Segments(_) => 0.0,
         }
     }
 }
@@ -47,7 +53,7 @@ impl Contraction {
 /// +z; of segments a + b G(-s z/lambda, c t/lambda), see [`Segments`]
 ///
 /// a, b, z, lambda \[d\], to the centres of the wall spheres; c t/lambda in cycles.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RadiusWave {
     /// a \[d\]
     pub mean_radius: f64,
@@ -83,6 +89,7 @@ impl RadiusWave {
     pub fn radius(&self, z: f64, cycles: f64) -> f64 {
         let value = match &self.contraction {
             Contraction::Wave(waveform) => waveform.value(self.phase(z, cycles)),
+            Contraction::Table(table) => table.value_and_slope(self.phase(z, cycles)).0,
             Contraction::Segments(segments) => segments.squeeze(self.along(z), cycles).value,
         };
         self.mean_radius + self.amplitude * value
@@ -91,7 +98,7 @@ impl RadiusWave {
     /// Least R anywhere now \[d\].
     pub fn narrowest(&self, cycles: f64) -> f64 {
         let depth = match &self.contraction {
-            Contraction::Wave(_) => 1.0,
+            Contraction::Wave(_) | Contraction::Table(_) => 1.0,
             Contraction::Segments(segments) => segments.depth(cycles),
         };
         self.mean_radius - depth * self.amplitude.abs()
@@ -102,6 +109,10 @@ impl RadiusWave {
         match &self.contraction {
             Contraction::Wave(waveform) => {
                 let value_and_slope = waveform.value_and_slope(self.phase(z, cycles));
+                self.ring_of(value_and_slope, frequency, amplitude_rate)
+            }
+            Contraction::Table(table) => {
+                let value_and_slope = table.value_and_slope(self.phase(z, cycles));
                 self.ring_of(value_and_slope, frequency, amplitude_rate)
             }
             Contraction::Segments(segments) => {
@@ -175,7 +186,12 @@ mod tests {
     #[test]
     fn velocity_and_slope_are_the_derivatives_of_the_radius() {
         let segments = Segments::new(&SegmentDrive::default()).unwrap();
-        let contractions = [Waveform::Sine.into(), Contraction::Segments(segments)];
+        let table = RadiusTable::new(&[0.05, 0.3, 0.5, 0.8], &[1.5, 0.9, 1.0, 1.2]).unwrap();
+        let contractions = [
+            Waveform::Sine.into(),
+            Contraction::Table(table),
+            Contraction::Segments(segments),
+        ];
         for (heading, contraction) in [-1.0, 1.0]
             .into_iter()
             .flat_map(|heading| contractions.map(|contraction| (heading, contraction)))

@@ -102,13 +102,16 @@ class Keywords(TypedDict, total=False):
     drive_fall: float
     drive_force_amplitude: float
     drive_order: Sequence[int]
+    drive_phases: Sequence[float]
+    drive_radii: Sequence[float]
     drive_ramp_periods: float
     drive_rise: float
     drive_schedule: Literal["sudden", "ramp"] | Mapping[str, Any] | Sequence[Mapping[str, Any]]
     drive_segments: int
     drive_strain_rate: float
+    drive_table: str
     drive_wave_speed: float
-    drive_waveform: Literal["sine", "bolus", "roller", "segments"]
+    drive_waveform: Literal["sine", "bolus", "roller", "table", "segments"]
     drive_width: float
     duration: float
     """run.duration. Length of the run in time, rounded up to whole samples; the only choice for a static wave.
@@ -182,6 +185,9 @@ class Keywords(TypedDict, total=False):
     """run.periods. Length of the run in wave periods, rounded up to whole samples. They are those of
     drive.strain_rate: where a schedule changes the rate, the wave runs more or fewer wavelengths (column period).
     (Unit: periods.)"""
+    phases: Sequence[float]
+    """drive.phases. Phases of the points of waveform = "table" in cycles, ascending from 0 on; 3 to 128 of them. (A
+    pure number.)"""
     places: Sequence[float]
     """tube.places. Place of each of them along the tube, 0 <= z < L. (Unit: d.)"""
     poisson_ratio: float
@@ -191,6 +197,9 @@ class Keywords(TypedDict, total=False):
     one of them. (A pure number.)"""
     radial: float
     """wall.keep.radial. Stiffness of the radial tether of a wall sphere to its place. (Unit: m t^-2.)"""
+    radii: Sequence[float]
+    """drive.radii. Radius at each of them. Their shape alone counts: the largest becomes tube.radius, the least
+    half of drive.width. (A pure number.)"""
     radius: float
     """tube.radius. Mean radius a, to the centres of the wall spheres. (Unit: d.)"""
     ramp_periods: float
@@ -257,6 +266,9 @@ class Keywords(TypedDict, total=False):
     strain_rate: float
     """drive.strain_rate. Strain rate c/lambda, one over the wave's period; 0 is a static wave and needs
     run.duration. (Unit: t^-1.)"""
+    table: str
+    """drive.table. Table of waveform = "table" instead of phases and radii: CSV with the columns phase (cycles) and
+    radius, one point a line. Its path is that from the configuration file, or from where the program runs."""
     tangential_damping: float
     """contact.tangential_damping. Tangential damping eta_t. Without effect while both frictions are 0. (Unit: m
     t^-1.)"""
@@ -307,7 +319,7 @@ class Keywords(TypedDict, total=False):
     drive.wave_speed, with which the wave in SI follows stiffness or young_modulus. (Unit: Hz.)"""
     wave_speed: float
     """drive.wave_speed. Speed c of the wave; 0 is a static wave and needs run.duration. (Unit: d t^-1.)"""
-    waveform: Literal["sine", "bolus", "roller", "segments"]
+    waveform: Literal["sine", "bolus", "roller", "table", "segments"]
     """drive.waveform. Shape of the wave."""
     wavelength: float
     """tube.wavelength. Wavelength lambda. (Unit: d.)"""

@@ -137,7 +137,7 @@ mod tests {
             let configuration = Configuration::from_preset(preset, &settings).unwrap();
             let found = warnings(&configuration)
                 .into_iter()
-                .any(|warning| warning.message.contains("gives way"));
+                .any(|warning| warning.message.contains("grains escape"));
             assert_eq!(found, leaks, "{preset} at {strain_rate}");
         }
     }

@@ -1,0 +1,152 @@
+//! A wave whose shape a table gives: radius against phase.
+
+/// Most points of a table.
+pub const MOST_POINTS: usize = 128;
+
+/// A periodic curve through the points of a table, as a waveform g: 0 where the radius is largest, -1 where it is least.
+///
+/// Between points a cubic whose slopes make no new extremes (F. N. Fritsch and J. Butland, SIAM J. Sci. Stat. Comput. 5,
+/// 300 (1984)): the curve and its slope are continuous.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RadiusTable {
+    number: usize,
+    /// In cycles, ascending.
+    phases: [f64; MOST_POINTS],
+    values: [f64; MOST_POINTS],
+    /// dg/d phase
+    slopes: [f64; MOST_POINTS],
+}
+
+impl RadiusTable {
+    /// `None` unless there are 3 to [`MOST_POINTS`] phases, ascending from 0 on and below 1, and as many finite radii, not
+    /// all alike.
+    pub fn new(phases: &[f64], radii: &[f64]) -> Option<Self> {
+        let number = phases.len();
+        let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = radii.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let is_ordered = phases.windows(2).all(|pair| pair[0] < pair[1])
+            && phases.iter().all(|phase| (0.0..1.0).contains(phase));
+        let is_curve = radii.iter().all(|radius| radius.is_finite()) && least < most;
+        if !(3..=MOST_POINTS).contains(&number) || radii.len() != number || !is_ordered || !is_curve
+        {
+            return None;
+        }
+        let mut table = Self {
+            number,
+            phases: [0.0; MOST_POINTS],
+            values: [0.0; MOST_POINTS],
+            slopes: [0.0; MOST_POINTS],
+        };
+        table.phases[..number].copy_from_slice(phases);
+        for (value, radius) in table.values.iter_mut().zip(radii) {
+            *value = (radius - most) / (most - least);
+        }
+        for point in 0..number {
+            let (before, rise_before) = table.piece((point + number - 1) % number);
+            let (after, rise_after) = table.piece(point);
+            let (steep_before, steep_after) = (rise_before / before, rise_after / after);
+            if steep_before * steep_after > 0.0 {
+                let (one, other) = (2.0 * after + before, after + 2.0 * before);
+                table.slopes[point] = (one + other) / (one / steep_before + other / steep_after);
+            }
+        }
+        Some(table)
+    }
+
+    /// Length and rise of the curve from a point to the next, round the end.
+    fn piece(&self, point: usize) -> (f64, f64) {
+        let next = (point + 1) % self.number;
+        let turn = if next == 0 { 1.0 } else { 0.0 };
+        let length = self.phases[next] + turn - self.phases[point];
+        (length, self.values[next] - self.values[point])
+    }
+
+    /// Value, and derivative with respect to the phase in cycles.
+    pub fn value_and_slope(&self, phase: f64) -> (f64, f64) {
+        let phase = phase - phase.floor();
+        let passed = self.phases[..self.number].partition_point(|point| *point <= phase);
+        let point = (passed + self.number - 1) % self.number;
+        let since = phase - self.phases[point] + if passed == 0 { 1.0 } else { 0.0 };
+        let (length, rise) = self.piece(point);
+        let next = (point + 1) % self.number;
+        let x = since / length;
+        let [from, to] = [point, next].map(|point| length * self.slopes[point]);
+        // g = v + from x + (3 rise - 2 from - to) x^2 + (from + to - 2 rise) x^3
+        let (square, cube) = (3.0 * rise - 2.0 * from - to, from + to - 2.0 * rise);
+        let value = self.values[point] + x * (from + x * (square + x * cube));
+        let slope = (from + x * (2.0 * square + x * 3.0 * cube)) / length;
+        (value.clamp(-1.0, 0.0), slope)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_goes_through_its_points_and_makes_no_new_extremes() {
+        let (phases, radii) = ([0.1, 0.3, 0.35, 0.8], [1.5, 1.5, 0.5, 1.0]);
+        let table = RadiusTable::new(&phases, &radii).unwrap();
+        for (phase, radius) in phases.into_iter().zip(radii) {
+            let (value, _) = table.value_and_slope(phase + 2.0);
+            assert!((value - (radius - 1.5)).abs() < 1e-12, "{phase}: {value}");
+        }
+        let h = 1e-7;
+        let mut before = table.value_and_slope(0.0);
+        for step in 1..=100_000_u32 {
+            let phase = f64::from(step) / 1e5;
+            let (value, slope) = table.value_and_slope(phase);
+            assert!((-1.0..=0.0).contains(&value));
+            // Flat where two neighbours are alike, monotonic between the others.
+            assert!(!(0.1..0.3).contains(&phase) || value.abs() < 1e-14);
+            assert!(!(0.36..0.79).contains(&phase) || slope >= 0.0);
+            assert!((value - before.0).abs() < 1e-3 && (slope - before.1).abs() < 0.1);
+            before = (value, slope);
+            if step % 97 == 0 {
+                let [ahead, behind] = [phase + h, phase - h].map(|at| table.value_and_slope(at).0);
+                assert!(
+                    (slope - (ahead - behind) / (2.0 * h)).abs() < 1e-4,
+                    "{phase}"
+                );
+            }
+        }
+    }
+
+    /// A sine at 64 points is a sine.
+    #[test]
+    fn a_fine_table_is_the_curve_that_it_was_taken_from() {
+        let phases: Vec<f64> = (0..64).map(|point| f64::from(point) / 64.0).collect();
+        let sine = |phase: f64| libm::sin(core::f64::consts::TAU * phase);
+        let radii: Vec<f64> = phases
+            .iter()
+            .map(|phase| 1.5 + 0.25 * sine(*phase))
+            .collect();
+        let table = RadiusTable::new(&phases, &radii).unwrap();
+        for step in 0..1000_u32 {
+            let phase = f64::from(step) / 1000.0;
+            let (value, _) = table.value_and_slope(phase);
+            let apart = 2.0 * value + 1.0 - sine(phase);
+            assert!(apart.abs() < 1e-3, "{phase}: {apart}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_curve_is_refused() {
+        let no_curve: [(&[f64], &[f64]); 7] = [
+            (&[0.0, 0.5], &[1.0, 2.0]),
+            (&[0.0, 0.5, 0.5], &[1.0, 2.0, 1.0]),
+            (&[0.0, 0.5, 1.0], &[1.0, 2.0, 1.0]),
+            (&[-0.1, 0.5, 0.9], &[1.0, 2.0, 1.0]),
+            (&[0.0, 0.5, 0.9], &[1.0, 2.0]),
+            (&[0.0, 0.5, 0.9], &[1.0, 1.0, 1.0]),
+            (&[0.0, 0.5, 0.9], &[1.0, f64::NAN, 2.0]),
+        ];
+        for (phases, radii) in no_curve {
+            assert_eq!(
+                RadiusTable::new(phases, radii),
+                None,
+                "{phases:?} {radii:?}"
+            );
+        }
+    }
+}
