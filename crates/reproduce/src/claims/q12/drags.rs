@@ -69,7 +69,7 @@ impl Drags {
         let [first, .., last] = &*self.given else {
             return Err((f64::NAN, true));
         };
-        if !(self.taken.value > last.1.value) {
+        if self.taken.value <= last.1.value {
             return Err((last.0, true));
         }
         let pairs = self.given.windows(2);
