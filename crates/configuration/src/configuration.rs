@@ -9,7 +9,7 @@ use peristalsis_physics::contact::ContactModel;
 use peristalsis_physics::method::{InitialState, Integrator, Kernel};
 use peristalsis_physics::wall::{
     Arrangement, Contraction, DriveAngle, ElasticNetwork, RadiusTable, SegmentDrive, Segments,
-    WaveDirection, Waveform,
+    WaveDirection,
 };
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use crate::limits;
 use crate::schedule::{Schedule, ScheduledParameter};
 use crate::units::Units;
+use crate::waveform::WaveformName;
 
 /// Everything that determines one run; alternatives of the TOML form are resolved to one value.
 ///
@@ -214,44 +215,14 @@ pub struct Drive {
     pub schedules: Vec<Schedule>,
 }
 
-/// How the tube is squeezed, by name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum WaveformName {
-    /// sin(2 pi phase): throats and bellies alike.
-    #[default]
-    Sine,
-    /// One smooth squeeze, cos^2, over half of each wavelength; elsewhere the tube is straight, of radius a.
-    Bolus,
-    /// A round roller pressed into the tube over half of each wavelength; elsewhere the tube is straight, of radius a.
-    Roller,
-    /// A wave whose shape a table gives: drive.table, or drive.phases and drive.radii. Strain control.
-    Table,
-    /// Segments of finite length that close and open in turn; an open one is straight, of radius a. Strain control.
-    Segments,
-}
-
-impl WaveformName {
-    /// The wave of this name; `None` for one that is more than a name.
-    pub fn travelling(self) -> Option<Waveform> {
-        match self {
-            Self::Sine => Some(Waveform::Sine),
-            Self::Bolus => Some(Waveform::Bolus),
-            Self::Roller => Some(Waveform::Roller),
-            Self::Table | Self::Segments => None,
-        }
-    }
-}
-
 impl Drive {
     /// How a wavelength of the tube is squeezed.
     pub fn contraction(&self) -> Contraction {
         let segments = self.segments.as_ref().and_then(Segments::new);
-        match (segments, RadiusTable::new(&self.phases, &self.radii)) {
-            (Some(segments), _) => Contraction::Segments(segments),
-            (None, Some(table)) => Contraction::Table(table),
-            (None, None) => self.waveform.travelling().unwrap_or_default().into(),
-        }
+        let table = RadiusTable::new(&self.phases, &self.radii).map(Contraction::Table);
+        let wave = || self.waveform.travelling().unwrap_or_default().into();
+        let segments = segments.map(Contraction::Segments);
+        segments.or(table).unwrap_or_else(wave)
     }
 
     /// Period of the wave T = lambda/c \[t\]; `None` for a static wave.

@@ -40,9 +40,10 @@ mod schema;
 mod source;
 mod suggestion;
 mod units;
+mod waveform;
 
 pub use configuration::{
-    Body, Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall, WaveformName,
+    Body, Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall,
 };
 pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
@@ -60,3 +61,4 @@ pub use schedule::{Schedule, ScheduledParameter};
 pub use schema::{schema, schema_of};
 pub use source::{Origin, SourceFile, Sources};
 pub use units::Units;
+pub use waveform::WaveformName;

@@ -4,10 +4,11 @@ use super::{Context, plain, schedules};
 use peristalsis_physics::wall::table::MOST_POINTS;
 use peristalsis_physics::wall::{LONGEST_CYCLE, RadiusTable, SegmentDrive, Segments};
 
-use crate::configuration::{Control, Drive, Tube, WaveformName};
+use crate::configuration::{Control, Drive, Tube};
 use crate::error::ProblemKind;
 use crate::keys::Keys;
 use crate::units::Units;
+use crate::waveform::WaveformName;
 
 /// The drive of a tube.
 pub(super) fn drive(
