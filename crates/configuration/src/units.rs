@@ -59,6 +59,11 @@ impl Units {
         self.length() / self.time()
     }
 
+    /// m d/t^2 \[N\].
+    pub fn force(&self) -> f64 {
+        self.mass() * self.velocity() / self.time()
+    }
+
     /// m/(d t^2) \[Pa\].
     pub fn pressure(&self) -> f64 {
         self.mass() / (self.length() * self.time() * self.time())

@@ -4,11 +4,12 @@
 //! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
 //! the wave frame, [`WaveByWave`] the flow of each wave over each period,
 //! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow
-//! how grains turn; [`Load`] is what they bear.
+//! how grains turn; [`Load`] is what they bear, [`ContactForces`] what may break them.
 
 #![forbid(unsafe_code)]
 
 pub mod columns;
+mod contact_force;
 mod diagnosis;
 mod dispersion;
 mod load;
@@ -22,6 +23,7 @@ mod view;
 mod waves;
 
 pub use columns::{COLUMNS, Column, PROFILE, WAVES};
+pub use contact_force::{ContactForce, ContactForces};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
 pub use load::{GrainContact, Load, clear_volume, grain_contacts};

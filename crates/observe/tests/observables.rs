@@ -7,8 +7,8 @@ use peristalsis_engine::wall::{
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
-    AxialDispersion, COLUMNS, Column, FaultKind, Observer, PROFILE, Quantity, TubeShape, View,
-    WAVES, WaveByWave, WaveFrameProfile, WavePart, note_wall_faults,
+    AxialDispersion, COLUMNS, Column, ContactForce, ContactForces, FaultKind, Observer, PROFILE,
+    Quantity, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
@@ -425,4 +425,69 @@ fn columns_have_distinct_names_and_all_are_explained() {
 
 fn heading<Of>(quantity: &Quantity<Of>) -> (&'static str, &'static str, &'static str) {
     (quantity.name, quantity.unit, quantity.text)
+}
+
+/// Pairs of grains at rest that overlap by xi push with k xi, k = 1.
+#[test]
+fn forces_at_contacts_are_the_largest_and_what_99_per_cent_stay_below() {
+    let pair = |number: u32| {
+        let place = DVec3::new(-3.0, 0.0, 0.6 + 3.0 * f64::from(number));
+        let overlap = 0.01 * f64::from(number + 1);
+        [place, place + DVec3::new(1.0 - overlap, 0.0, 0.0)]
+    };
+    let places: Vec<DVec3> = (0..6).flat_map(pair).collect();
+    let diameters = vec![1.0; places.len()];
+    let bodies = Bodies::grains_at_rest(places, diameters);
+    let mut simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
+    let found = ContactForce::of(&simulation);
+    // Of six contacts the sixth is the first that 99 % do not exceed.
+    assert!((found.largest - 0.06).abs() < 1e-12 && found.high == found.largest);
+
+    let mut forces = ContactForces::default();
+    assert!(forces.late(0.0).is_empty());
+    // Periods of 500 steps: every fourth is looked at.
+    for _ in 0..9 {
+        simulation.advance(500).expect("soft pairs");
+        forces.end_period(&simulation);
+    }
+    let times: Vec<f64> = forces.late(0.0).iter().map(|look| look.time).collect();
+    assert_eq!(times.len(), 3);
+    assert!((times[0] - 25.0).abs() < 1e-9 && (times[2] - 225.0).abs() < 1e-9);
+    assert_eq!(forces.late(100.0).len(), 2);
+    // None is as late: the last.
+    assert_eq!(forces.late(1e9).len(), 1);
+    // The pairs have flown apart.
+    let none = ContactForce {
+        time: times[2],
+        largest: 0.0,
+        high: 0.0,
+    };
+    assert_eq!(forces.late(1e9), [none]);
+}
+
+#[test]
+fn a_hundred_and_one_contacts_leave_one_above() {
+    let pair = |number: u32| {
+        let (ring, place) = (number % 20, number / 20);
+        let angle = core::f64::consts::TAU / 20.0 * f64::from(ring);
+        let centre = DVec3::new(
+            4.0 * angle.cos(),
+            4.0 * angle.sin(),
+            0.5 + 3.0 * f64::from(place),
+        );
+        let overlap = if number == 7 {
+            0.2
+        } else {
+            0.001 * f64::from(number % 100)
+        };
+        let along = DVec3::new(0.0, 0.0, 1.0 - overlap);
+        [centre, centre + along]
+    };
+    let places: Vec<DVec3> = (0..101).flat_map(pair).collect();
+    let diameters = vec![1.0; places.len()];
+    let bodies = Bodies::grains_at_rest(places, diameters);
+    let simulation = Simulation::new(bodies, wall(1.0, 0.0), parameters());
+    let found = ContactForce::of(&simulation);
+    assert!((found.largest - 0.2).abs() < 1e-12, "{found:?}");
+    assert!(found.high < 0.1 && found.high > 0.09, "{found:?}");
 }

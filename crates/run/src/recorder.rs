@@ -4,8 +4,8 @@ use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
 use peristalsis_observe::{
-    AxialDispersion, Observer, Sample, Series, View, WallFault, WaveByWave, WaveFlow,
-    WaveFrameProfile, note_wall_faults,
+    AxialDispersion, ContactForces, Observer, Sample, Series, View, WallFault, WaveByWave,
+    WaveFlow, WaveFrameProfile, note_wall_faults,
 };
 
 /// Thresholds of J/Jmax at which every run notes its transition besides the configured one: which of them lies midway
@@ -32,6 +32,7 @@ pub struct Recorder {
     wall_interval: u64,
     waves: WaveByWave,
     dispersion: AxialDispersion,
+    contact_forces: ContactForces,
     wall_faults: Vec<WallFault>,
 }
 
@@ -70,6 +71,7 @@ impl Recorder {
         let observer = Observer::new(simulation);
         Self {
             dispersion: AxialDispersion::new(&observer),
+            contact_forces: ContactForces::default(),
             observer,
             samples: Series::new(1),
             samples_per_period,
@@ -103,6 +105,7 @@ impl Recorder {
             && self.ladder.len() <= THRESHOLDS.len()
             && self.observer.fits(grains)
             && self.dispersion.fits(grains)
+            && self.contact_forces.fits()
             && self.waves.fits(waves, samples_per_period)
             && self.profile.fits(bins, samples_per_period)
     }
@@ -127,6 +130,7 @@ impl Recorder {
             self.ratios = -0.0;
             self.averages.push([average]);
             self.dispersion.end_period(&self.observer, &view);
+            self.contact_forces.end_period(simulation);
             // Without grains inside there is no ratio, and the search ends.
             if !average.is_finite() || self.push(average).is_none() {
                 self.detector = None;
@@ -210,6 +214,11 @@ impl Recorder {
     /// How the grains disperse along the tube.
     pub fn dispersion(&self) -> &AxialDispersion {
         &self.dispersion
+    }
+
+    /// The forces at the contacts of the grains.
+    pub fn contact_forces(&self) -> &ContactForces {
+        &self.contact_forces
     }
 
     /// What went wrong with an elastic wall, the first of each kind.

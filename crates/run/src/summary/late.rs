@@ -2,7 +2,7 @@
 
 use peristalsis_analysis::mean_with_error;
 use peristalsis_configuration::Configuration;
-use peristalsis_observe::{AxialDispersion, Sample};
+use peristalsis_observe::{AxialDispersion, ContactForces, Sample};
 
 use super::mean_of;
 
@@ -51,6 +51,29 @@ impl Pumping {
             pressure_rise: configuration.pressure_rise(),
             useful_power: (useful_power, power_error),
             efficiency: (efficiency, error_of(late.iter().map(beyond)) / wall_power),
+        })
+    }
+}
+
+/// Normal forces at the contacts of the grains in the late part of a run \[m d/t^2\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ForceOfContacts {
+    /// Largest.
+    pub(super) largest: f64,
+    /// Mean of the force that 99 % of them do not exceed, and its error.
+    pub(super) high: (f64, f64),
+}
+
+impl ForceOfContacts {
+    /// `None` before the first whole period.
+    pub(super) fn of(late: &[Sample], forces: &ContactForces) -> Option<Self> {
+        let looks = forces.late(late.first()?.time);
+        let high = || looks.iter().map(|look| look.high);
+        let largest = looks.iter().map(|look| look.largest).reduce(f64::max)?;
+        let mean = high().sum::<f64>() / looks.len() as f64;
+        Some(Self {
+            largest,
+            high: (mean, error_of(high())),
         })
     }
 }

@@ -11,7 +11,7 @@ use peristalsis_engine::initial::PackingReport;
 use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 
 pub use late::Pumping;
-use late::{axial_dispersion, residence_time};
+use late::{ForceOfContacts, axial_dispersion, error_of, residence_time};
 use local_flow::LocalFlow;
 pub use written::{RowColumn, SummaryKey, label, row_columns, set_by, summary_keys};
 
@@ -92,6 +92,7 @@ pub struct Summary {
     front: PartOfWave,
     throat: LocalFlow,
     belly: LocalFlow,
+    contact_force: Option<ForceOfContacts>,
     residence_time: Option<(f64, f64)>,
     axial_dispersion: (f64, f64),
     packing: PackingReport,
@@ -147,6 +148,7 @@ impl Summary {
             front: part(WavePart::Front),
             throat: LocalFlow::throat(&profile),
             belly: LocalFlow::belly(&profile),
+            contact_force: ForceOfContacts::of(late, recorder.contact_forces()),
             residence_time: residence_time(late),
             axial_dispersion: axial_dispersion(late, recorder.dispersion()),
             late: late.to_vec(),
@@ -178,6 +180,21 @@ impl Summary {
     pub fn in_si(&self, value: f64, unit: fn(&Units) -> f64) -> Option<f64> {
         let units = self.configuration.units.as_ref()?;
         Some(value * unit(units))
+    }
+
+    /// Late mean of the mass that flows and its error \[kg/s\]; `None` where the configuration does not say its units.
+    pub fn mass_flow_rate_in_si(&self) -> Option<(f64, f64)> {
+        let mass = self.configuration.mean_grain_mass();
+        let error = error_of(self.late.iter().map(|sample| sample.flow_rate));
+        let in_si = |flow: f64| self.in_si(mass * flow, Units::mass_flow);
+        Some((in_si(self.flow_rate())?, in_si(error)?))
+    }
+
+    /// Late mean of the normal force that 99 % of the contacts of grains do not exceed, and the largest
+    /// \[m d/t^2\]; `None` before the first whole period.
+    pub fn contact_force(&self) -> Option<(f64, f64)> {
+        self.contact_force
+            .map(|force| (force.high.0, force.largest))
     }
 
     fn mean(&self, value: fn(&Sample) -> f64) -> f64 {

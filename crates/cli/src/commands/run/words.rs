@@ -62,18 +62,28 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             efficiency(pumping)
         ));
     }
-    let mass_flow = summary.flow_rate() * configuration.mean_grain_mass();
-    if let (Some(mass_flow), Some(power), Some(pressure), Some(largest)) = (
-        summary.in_si(mass_flow, Units::mass_flow),
+    if let (Some((mass_flow, error)), Some(power), Some(pressure), Some(largest)) = (
+        summary.mass_flow_rate_in_si(),
         summary.in_si(summary.wall_power(), Units::power),
         summary.in_si(summary.wall_pressure, Units::pressure),
         summary.in_si(summary.wall_pressure_largest, Units::pressure),
     ) {
+        let an_hour = 3600.0 * mass_flow;
+        let error = known_error(an_hour, 3600.0 * error);
+        let error = error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
         flow.push_str(&format!(
-            "\nin SI: {mass_flow:.3e} kg/s, wall power {power:.3e} W, pressure on the wall {pressure:.3e} Pa (at most \
+            "\nin SI: {an_hour:.3e}{error} kg/h, wall power {power:.3e} W, pressure on the wall {pressure:.3e} Pa (at most \
              {largest:.3e} averaged over 1/{} of a wavelength)",
             configuration.observe.profile_bins
         ));
+        let force = |value: f64| summary.in_si(value, Units::force);
+        if let Some((high, largest)) = summary.contact_force()
+            && let (Some(high), Some(largest)) = (force(high), force(largest))
+        {
+            flow.push_str(&format!(
+                "\n       99 % of the contacts below {high:.3e} N, the largest {largest:.3e} N"
+            ));
+        }
     }
     let mut text = format!(
         "{transition}\n{flow}\n{}, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} in {}: \

@@ -1,0 +1,90 @@
+//! The forces that grains bear at their contacts, at some moments of a run: what may break them.
+
+use peristalsis_engine::Simulation;
+use serde::{Deserialize, Serialize};
+
+use crate::load::grain_contacts;
+use crate::series::{Join, Series, joined};
+
+/// Steps from one look to the next, at least: every contact has to be found again, which takes as long as some steps.
+const STEPS_BETWEEN_LOOKS: u64 = 2_000;
+/// Part of the contacts below [`ContactForce::high`].
+const PART: f64 = 0.99;
+
+/// The normal forces at the contacts of the grains, with each other and with the wall, at a moment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactForce {
+    /// The moment \[t\].
+    pub time: f64,
+    /// Largest of them; 0 without contacts \[m d/t^2\].
+    pub largest: f64,
+    /// Force that 99 % of them do not exceed; 0 without contacts \[m d/t^2\].
+    pub high: f64,
+}
+
+impl ContactForce {
+    /// The forces now.
+    pub fn of(simulation: &Simulation) -> Self {
+        let contacts = grain_contacts(simulation).into_iter();
+        let mut forces: Vec<f64> = contacts.map(|it| it.touching.normal_force).collect();
+        forces.sort_by(f64::total_cmp);
+        let rank = (PART * forces.len() as f64).ceil() as usize;
+        Self {
+            time: simulation.time(),
+            largest: forces.last().copied().unwrap_or(0.0).max(0.0),
+            high: forces
+                .get(rank.saturating_sub(1))
+                .map_or(0.0, |it| it.max(0.0)),
+        }
+    }
+}
+
+/// Of several moments the largest force, and the mean of those that 99 % do not exceed.
+impl Join for ContactForce {
+    fn join(&mut self, own: u64, next: &Self, others: u64) {
+        *self = Self {
+            time: next.time,
+            largest: self.largest.max(next.largest),
+            high: joined(self.high, own, next.high, others),
+        };
+    }
+}
+
+/// The forces at ends of periods all along a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactForces {
+    looks: Series<ContactForce>,
+    /// Step from which on the next look is due.
+    due: u64,
+}
+
+impl Default for ContactForces {
+    fn default() -> Self {
+        Self {
+            looks: Series::new(1),
+            due: 0,
+        }
+    }
+}
+
+impl ContactForces {
+    /// Ends a period now: looks, if that is due.
+    pub fn end_period(&mut self, simulation: &Simulation) {
+        if simulation.step() >= self.due {
+            self.due = simulation.step() + STEPS_BETWEEN_LOOKS;
+            self.looks.push([ContactForce::of(simulation)]);
+        }
+    }
+
+    /// The looks from a time \[t\] on, or the last one before.
+    pub fn late(&self, start: f64) -> &[ContactForce] {
+        let looks = self.looks.rows();
+        let early = looks.partition_point(|look| look.time < start);
+        &looks[early.min(looks.len().saturating_sub(1))..]
+    }
+
+    /// Whether it can be what was seen by a run.
+    pub fn fits(&self) -> bool {
+        self.looks.fits(1)
+    }
+}
