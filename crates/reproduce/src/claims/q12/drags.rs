@@ -81,7 +81,7 @@ impl Drags {
                 .contains(&part)
                 .then(|| pair[0].0 + part * (pair[1].0 - pair[0].0))
         };
-        pairs.filter_map(place).last().ok_or((first.0, false))
+        pairs.filter_map(place).next_back().ok_or((first.0, false))
     }
 
     /// Whether both rates are equal at w_c, by the rule of the predictions; `None` without a w_c.
