@@ -29,7 +29,7 @@ const LABELS: [(&str, &[&str]); 7] = [
     ("panels", &["(d)  A = 0.6", "a note"]),
     (
         "snapshot",
-        &["z/d", "x/d", "axial velocity along the wave, vz/c"],
+        &["z/d", "y/d", "axial velocity along the wave, vz/c"],
     ),
     (
         "snapshots",
@@ -88,7 +88,7 @@ fn every_svg_is_well_formed_bears_its_labels_on_its_page_and_is_the_same_each_ti
         for label in wanted.flat_map(|(_, labels)| *labels) {
             let count = found.iter().filter(|found| *found == label).count();
             // Every panel bears these.
-            let is_repeated = ["a note", "x/d"].contains(label);
+            let is_repeated = ["a note", "y/d"].contains(label);
             assert!(count > 0, "{name} lacks `{label}`: {found:?}");
             assert_eq!(count > 1, is_repeated, "`{label}` of {name}: {found:?}");
         }

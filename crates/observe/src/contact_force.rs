@@ -50,7 +50,7 @@ impl Join for ContactForce {
     }
 }
 
-/// The forces at ends of periods all along a run.
+/// The forces at moments all along a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactForces {
     looks: Series<ContactForce>,
@@ -68,8 +68,8 @@ impl Default for ContactForces {
 }
 
 impl ContactForces {
-    /// Ends a period now: looks, if that is due.
-    pub fn end_period(&mut self, simulation: &Simulation) {
+    /// Looks, if that is due.
+    pub fn look(&mut self, simulation: &Simulation) {
         if simulation.step() >= self.due {
             self.due = simulation.step() + STEPS_BETWEEN_LOOKS;
             self.looks.push([ContactForce::of(simulation)]);

@@ -112,6 +112,7 @@ impl Recorder {
 
     /// Takes a sample of the simulation.
     pub(crate) fn record(&mut self, simulation: &Simulation) {
+        self.contact_forces.look(simulation);
         let view = View::of(simulation);
         let before = self.observer.end_interval(&view);
         let sample = Sample::of(&before, &self.observer, &view);
@@ -130,7 +131,6 @@ impl Recorder {
             self.ratios = -0.0;
             self.averages.push([average]);
             self.dispersion.end_period(&self.observer, &view);
-            self.contact_forces.end_period(simulation);
             // Without grains inside there is no ratio, and the search ends.
             if !average.is_finite() || self.push(average).is_none() {
                 self.detector = None;

@@ -2,7 +2,7 @@
 
 use peristalsis_formats::Values;
 
-use crate::row::Row;
+use crate::row::{LATER_RESULTS, Row};
 
 /// Columns that say by which program a run was computed, and not what came out.
 const PROGRAM: [&str; 2] = ["version", "revision"];
@@ -56,7 +56,9 @@ impl Row {
             let name = column.name.as_str();
             let here = number(self, name);
             let was_added = ADDED.iter().any(|begin| name.starts_with(begin));
-            if PROGRAM.contains(&name) || is_older && was_added && here.is_nan() {
+            let is_later = LATER_RESULTS.iter().any(|begin| name.starts_with(begin));
+            let was_unknown = is_older && was_added || is_later;
+            if PROGRAM.contains(&name) || was_unknown && here.is_nan() {
                 continue;
             }
             let there = computed.table().column(name).ok().map(|it| &it.values);
