@@ -23,7 +23,6 @@ PAGES = {
     "CONTRIBUTING.md": "developers/contributing.md",
     "CODE_OF_CONDUCT.md": "developers/contributing.md",
     "SECURITY.md": "developers/contributing.md",
-    "THIRD-PARTY.md": "developers/third-party.md",
     "crates/python/README.md": "guides/python.md",
 }
 #: Code, in which a dollar is a dollar and a bracket is a bracket; formulas; links.
