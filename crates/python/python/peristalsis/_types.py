@@ -407,6 +407,8 @@ class SiSummary(TypedDict):
 
     mass_flow_rate_kg_per_s: float | None
     """late mean flow J m; missing without the table units [kg/s]"""
+    mass_flow_rate_kg_per_s_error: float | None
+    """its standard error [kg/s]"""
     wall_power_w: float | None
     """wall_power in SI; missing without the table units [W]"""
     useful_power_w: float | None
@@ -417,6 +419,10 @@ class SiSummary(TypedDict):
     """wall_pressure in SI; missing without the table units [Pa]"""
     wall_pressure_largest_pa: float | None
     """wall_pressure_largest in SI; missing without the table units [Pa]"""
+    contact_force_99_n: float | None
+    """contact_force_99 in SI; missing without the table units [N]"""
+    contact_force_largest_n: float | None
+    """contact_force_largest in SI; missing without the table units [N]"""
     transition_time_s: float | None
     """transition_time in SI [s]"""
     residence_time_s: float | None
@@ -531,6 +537,12 @@ class Summary(TypedDict):
     """late mean pressure on the wall [m/(d t^2)]"""
     wall_pressure_largest: float
     """largest late mean pressure on the wall over the phases of the wave [m/(d t^2)]"""
+    contact_force_99: float | None
+    """late mean of the normal force that 99 % of the grains' contacts do not exceed [m d/t^2]"""
+    contact_force_99_error: float | None
+    """its standard error [m d/t^2]"""
+    contact_force_largest: float | None
+    """largest normal force at a contact of a grain, at the late moments that were looked at [m d/t^2]"""
     residence_time: float | None
     """late mean time of a grain through the tube, N/J; missing where the flow is not along the wave [t]"""
     residence_time_error: float | None

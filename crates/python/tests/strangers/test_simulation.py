@@ -42,10 +42,10 @@ def summed(sim: Simulation) -> np.ndarray:
 
 def test_a_leaking_tube_is_warned_of_where_it_is_made() -> None:
     """PYTHON, high 3."""
-    with pytest.warns(PeristalsisWarning, match="tube.rings_per_wave: .*grains leave the tube") as caught:
+    with pytest.warns(PeristalsisWarning, match="tube.rings_per_wave: .*grains escape") as caught:
         sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1)
     assert [Path(it.filename).name for it in caught] == [Path(__file__).name]
-    assert [it.key for it in sim.warnings] == ["tube.rings_per_wave"] and "leave the tube" in sim.warnings[0].message
+    assert [it.key for it in sim.warnings] == ["tube.rings_per_wave"] and "grains escape" in sim.warnings[0].message
     with warnings.catch_warnings():
         # Once is enough; what a run sees is another doubt.
         warnings.simplefilter("error")
