@@ -5,6 +5,7 @@
 //! for the other.
 
 mod analysis;
+mod collapse;
 mod command;
 mod configuration;
 mod error;
@@ -35,14 +36,16 @@ mod _core {
 
     #[pymodule_export]
     use crate::analysis::{
-        apply_collapse, autocorrelation_time, compare_laws, compare_laws_with_scatter, dip_test,
-        ensemble_moments, ensembles_by_width, fit_collapse, fit_inverse_line, fit_inverse_parabola,
-        fit_law, fit_law_to_nearest, fit_law_to_runs, fit_law_to_runs_in_windows,
-        fit_law_with_scatter, fit_lifetime, fit_line, fit_line_to_scatter, fit_parabola,
-        fit_shifted_exponential, fraction_crossing, hysteresis, jump_height, mean_with_error,
-        power_exponent, restricted_moments, second_moment, second_moment_peak, stationarity,
-        stationary_mean, survival, survival_median, test_collapse, transition_time, two_peaks,
+        autocorrelation_time, compare_laws, compare_laws_with_scatter, dip_test, ensemble_moments,
+        ensembles_by_width, fit_inverse_line, fit_inverse_parabola, fit_law, fit_law_to_nearest,
+        fit_law_to_runs, fit_law_to_runs_in_windows, fit_law_with_scatter, fit_lifetime, fit_line,
+        fit_line_to_scatter, fit_parabola, fit_shifted_exponential, fraction_crossing, hysteresis,
+        jump_height, mean_with_error, power_exponent, restricted_moments, second_moment,
+        second_moment_peak, stationarity, stationary_mean, survival, survival_median,
+        transition_time, two_peaks,
     };
+    #[pymodule_export]
+    use crate::collapse::{apply_collapse, fit_collapse, test_collapse};
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
