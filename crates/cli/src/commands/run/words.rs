@@ -1,7 +1,8 @@
 //! What came out of a run, in words.
 
-use peristalsis_analysis::number::known_error;
+use peristalsis_analysis::number::{known_error, plain, with_error};
 use peristalsis_configuration::Units;
+use peristalsis_reproduce::report::plain_text;
 use peristalsis_run::{Pumping, Run, Summary};
 
 use crate::commands::{counted, significant, unsigned_zero};
@@ -68,20 +69,21 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         summary.in_si(summary.wall_pressure, Units::pressure),
         summary.in_si(summary.wall_pressure_largest, Units::pressure),
     ) {
-        let an_hour = 3600.0 * mass_flow;
-        let error = known_error(an_hour, 3600.0 * error);
-        let error = error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
+        let number = |value| plain_text(&plain(value));
         flow.push_str(&format!(
-            "\nin SI: {an_hour:.3e}{error} kg/h, wall power {power:.3e} W, pressure on the wall {pressure:.3e} Pa (at most \
-             {largest:.3e} averaged over 1/{} of a wavelength)",
+            "\nin SI: {} kg/h, wall power {} W, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
+            plain_text(&with_error(3600.0 * mass_flow, 3600.0 * error)),
+            number(power),
+            number(pressure),
+            number(largest),
             configuration.observe.profile_bins
         ));
-        let force = |value: f64| summary.in_si(value, Units::force);
+        let force = |value: f64| summary.in_si(value, Units::force).map(number);
         if let Some((high, largest)) = summary.contact_force()
             && let (Some(high), Some(largest)) = (force(high), force(largest))
         {
             flow.push_str(&format!(
-                "\n       99 % of the contacts below {high:.3e} N, the largest {largest:.3e} N"
+                "\n       99 % of the contacts below {high} N, the largest {largest} N"
             ));
         }
     }
