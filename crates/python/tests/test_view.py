@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from peristalsis import ConfigurationError, Simulation
-from peristalsis._view import View
+from peristalsis._view import Widget
 
 
 @pytest.fixture
@@ -20,7 +20,7 @@ def sim() -> Simulation:
 class Page:
     """The other half of a widget: what it was told, and what it says."""
 
-    def __init__(self, view: View) -> None:
+    def __init__(self, view: Widget) -> None:
         self._view = view
         self.texts: list[dict[str, Any]] = []
         self.frames: list[dict[str, Any]] = []

@@ -2,17 +2,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Protocol
 from weakref import WeakSet
 
 from ._given import number
 from ._state import State
 
-if TYPE_CHECKING:
-    from ._view import View
-
 #: Parameters of the drive, which may change during a run.
 CHANGEABLE = ("width", "force_amplitude", "strain_rate")
+
+
+class View(Protocol):
+    """A widget of a notebook that shows a simulation and steers it, as its user sees it; `Simulation.view` makes one."""
+
+    #: The drive, as on the sliders [d, m d t^-2, 1/t]; None where it has no such parameter.
+    width: float | None
+    force_amplitude: float | None
+    strain_rate: float | None
+    #: Whether the simulation goes on by itself, while no cell runs.
+    playing: bool
+    #: How fast, in periods a second at most; None is as fast as it can.
+    speed: float | None
+
+    def _show(self) -> None: ...
+
+    def _seen(self) -> None: ...
 
 
 class Drive(State):

@@ -8,13 +8,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from . import _core
-from ._drive import Drive
+from ._drive import Drive, View
 from ._picture import Picture
 from ._writers import Writer
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
-    from ._view import View
 
 
 class Output(Drive):
@@ -224,12 +223,12 @@ class Output(Drive):
         2.6
         """
         try:
-            from ._view import View
+            from ._view import Widget
         except ImportError as error:
             if error.name not in ("anywidget", "ipywidgets", "traitlets"):
                 raise
             raise ImportError("view() needs anywidget: pip install 'peristalsis[widget]'", name=error.name) from error
-        return View(cast("Simulation", self), height)
+        return Widget(cast("Simulation", self), height)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a snapshot to a file, whole or not at all, over an older one; `Simulation.load` goes on from it, and so does

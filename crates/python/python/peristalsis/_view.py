@@ -23,7 +23,7 @@ _LATE = 0.15
 _HTML, _STYLE, _SCRIPT, _WIDGET = _core.page()
 
 
-class View(anywidget.AnyWidget):
+class Widget(anywidget.AnyWidget):
     """The page of the viewer, which shows a simulation and steers it; `Simulation.view` makes one.
 
     Its traits, the sliders of the page and the drive of the simulation are one: whichever is changed, the others follow.
