@@ -67,6 +67,10 @@ slurm:
 check-viewer *options:
     bash scripts/check_viewer.sh {{options}}
 
+# The page as a widget in a real JupyterLab: just check-notebook PYTHON, which has jupyterlab and this package.
+check-notebook python='python3':
+    cd viewer && node check-notebook.mjs {{python}}
+
 # The viewer's page made anew from viewer/ (TypeScript, three.js).
 viewer-bundle:
     bash scripts/viewer_bundle.sh

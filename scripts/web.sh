@@ -25,6 +25,10 @@ cp docs/images/viewer.jpg target/web/share.jpg
 # For browsers without JavaScript.
 cp docs/images/jamming.gif target/web/film.gif
 if [ -d target/book ]; then cp -r target/book target/web/book; fi
-# Its address is not known here: SOURCE=https://… just web
+# The address of the source is not known here: SOURCE=https://… just web. Without one the page brings the source along.
+if [ -z "${SOURCE:-}" ] && git rev-parse --git-dir >/dev/null 2>&1; then
+    SOURCE=source.tar.gz
+    git archive --format=tar.gz --prefix=peristalsis/ -o "target/web/$SOURCE" HEAD ':!validation/results' ':!docs/images'
+fi
 node viewer/web.mjs ${SOURCE:+"$SOURCE"}
 echo "target/web: open it with any static server, such as: python3 -m http.server --directory target/web --bind 127.0.0.1"

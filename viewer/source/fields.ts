@@ -83,7 +83,7 @@ export const FIELDS: Record<string, Field> = {
       // Sum of f r/(3 V), V = pi d^3/6 and r = d/2: f/(pi d^2).
       into.fill(0);
       eachContact(frame, (grain, force) => (into[grain] += force / (Math.PI * frame.diameter[grain] ** 2)));
-      const largest = Float32Array.from(into).sort()[Math.floor(0.98 * (into.length - 1))];
+      const largest = into.slice().sort()[Math.floor(0.98 * (into.length - 1))];
       usual += 0.05 * (largest - usual) || largest;
       this.ends[1] = `${written(usual, 2)} m/(d t²)`;
       for (let i = 0; i < into.length; i++) into[i] /= usual || 1;

@@ -1,10 +1,10 @@
 import type { Ink } from "./charts";
-import { colourAt, css, type Field, inWave, partsOf, stops } from "./fields";
+import { colourAt, css, type Field, inWave, stops } from "./fields";
 import { outline } from "./plots";
 import type { Frame, Welcome } from "./protocol";
 
 /** The tube from the side as circles in a plane, where a browser draws nothing in space: two waves, cut open. */
-export function drawFlat(canvas: HTMLCanvasElement, frame: Frame, field: Field, tube: Welcome, lightness: boolean, colours: Ink): void {
+export function drawFlat(canvas: HTMLCanvasElement, frame: Frame, parts: Float32Array, field: Field, tube: Welcome, lightness: boolean, colours: Ink): void {
   const context = canvas.getContext("2d");
   if (!context || canvas.clientWidth === 0) return;
   const density = Math.min(2, devicePixelRatio);
@@ -34,7 +34,6 @@ export function drawFlat(canvas: HTMLCanvasElement, frame: Frame, field: Field, 
     context.fillStyle = colour;
     context.fill();
   }
-  const parts = partsOf(field, frame, tube);
   const tones = stops(field, lightness);
   // Far ones first.
   const order = Array.from({ length: frame.grains }, (_, i) => i);

@@ -6,6 +6,8 @@ export interface Actions {
   slide(distance: number): void;
   move(around: number, up: number, nearer: number): void;
   release(): void;
+  /** Picks the grain in the middle, or the one after the picked one. */
+  next(): void;
   done(): void;
 }
 
@@ -24,6 +26,7 @@ export function listenToKeys(acts: Actions): void {
     "-": () => acts.move(0, 0, 1 / 0.9),
     "0": click("home"),
     c: click("contacts"),
+    g: () => acts.next(),
     l: click("live"),
     m: click("marks"),
     r: click("ride"),

@@ -23,9 +23,8 @@ import { type Chapter, givesUp, listenToChapters } from "./story";
 import { Sweep } from "./sweep";
 import { choice, named, wanted } from "./tubes";
 import { showWithin } from "./within";
+import { Work } from "./work";
 
-/** Pictures whose work is remembered. */
-const WORKS = 60;
 /** Milliseconds between two drawings of the charts. */
 const CHARTS = 120;
 
@@ -44,8 +43,7 @@ class Page {
   private chapter: Chapter | null = null;
   /** Whether the tube that comes is to be swept there and back. */
   private sweeps = false;
-  /** Milliseconds of the page's own work for each of the last pictures. */
-  private work: number[] = [];
+  private readonly work = new Work();
   /** Number of the frame that is shown; the newest where it is null, which no recording has. */
   private cursor: number | null = null;
   /** Whether kept frames are played from the cursor on. */
@@ -76,7 +74,7 @@ class Page {
   constructor() {
     const listener: Listener = {
       told: (message) => this.told(message),
-      frame: (frame) => this.receive(frame),
+      frame: (frame) => this.work.add(() => this.receive(frame)),
       lost: (reason) => this.lost(reason),
     };
     // The page that is put on any server computes its tube itself.
@@ -294,11 +292,17 @@ class Page {
 
   private tick(now: number): void {
     requestAnimationFrame((next) => this.tick(next));
-    const { scene, tube, film } = this;
     const took = now - this.ticked;
     this.ticked = now;
+    const { pictures } = this.scene ?? {};
+    this.work.add(() => this.picture(now, took));
+    if (pictures !== this.scene?.pictures) this.work.end();
+  }
+
+  /** Draws what is new. */
+  private picture(now: number, took: number): void {
+    const { scene, tube, film } = this;
     if (!tube || film.count === 0) return;
-    const begin = performance.now();
     if (film instanceof Recording) this.playOn(film, Math.min(0.25, took / 1000));
     else this.replay();
     // A recorded frame that has not come leaves the one before in the picture.
@@ -313,14 +317,12 @@ class Page {
       this.rode = frame.period;
       this.shownFrame = frame;
     }
-    const pictures = scene?.pictures;
     scene?.draw(ink(), took);
     if (this.chartsStale && now - this.chartsDrawn > CHARTS) {
       this.chartsStale = false;
       this.chartsDrawn = now;
       this.showReadout(frame, tube);
     }
-    if (pictures !== scene?.pictures) this.work = [...this.work.slice(-WORKS), performance.now() - begin];
   }
 
   private showReadout(frame: Frame, tube: Welcome): void {
@@ -429,6 +431,7 @@ class Page {
       slide: (distance) => this.scene?.slide(distance),
       move: (around, up, nearer) => this.scene?.move(around, up, nearer),
       release: () => this.pick(-1),
+      next: () => this.scene && this.pick(this.scene.next()),
       done: () => this.looked(),
     });
     this.showLegend();
@@ -477,13 +480,8 @@ class Page {
   get measured() {
     const frame = this.newest() ?? this.shownFrame;
     return {
-      frames: this.film.count,
-      pictures: this.scene?.pictures ?? 0,
-      work: this.work.toSorted((a, b) => a - b)[this.work.length >> 1],
-      rows: this.film.rows.length,
-      fineness: this.scene?.part ?? 1,
-      playing: this.playing(),
-      eye: this.scene?.eye ?? [],
+      frames: this.film.count, rows: this.film.rows.length, playing: this.playing(), work: this.work.median,
+      pictures: this.scene?.pictures ?? 0, fineness: this.scene?.part ?? 1, eye: this.scene?.eye ?? [],
       ...measuredOf(frame),
     };
   }

@@ -1,10 +1,11 @@
 import type { Chart, Entry, Ink } from "./charts";
-import { colourAt, type Field, inWave, partsOf, stops } from "./fields";
+import { colourAt, type Field, inWave, stops } from "./fields";
 import type { Film } from "./film";
 import type { Frame, Welcome } from "./protocol";
 
-/** Frames that a profile is averaged over. */
+/** Frames that a profile is averaged over, and looks at grains after which fewer frames do. */
 const AVERAGED = 16;
+const LOOKS = 12000;
 const BINS = 24;
 /** Looks at grains that a mean velocity is taken of, at least. */
 const FEWEST = 12;
@@ -74,7 +75,8 @@ export function drawBottleneck(chart: Chart, film: Film, clock: number, colours:
 
 /** Volume fraction and axial velocity in the wave frame, under the outline of the tube. */
 export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welcome, colours: Ink): void {
-  const frames = film.recent(shown, AVERAGED);
+  const grains = film.frame(shown)?.grains ?? tube.grains;
+  const frames = film.recent(shown, Math.min(AVERAGED, Math.ceil(LOOKS / grains)));
   const number = new Float64Array(BINS);
   const volume = new Float64Array(BINS);
   const velocity = new Float64Array(BINS);
@@ -152,9 +154,12 @@ export function outline(frame: Frame | undefined, tube: Welcome): number[] {
   return [...means, means[0]];
 }
 
-/** The whole tube from end to end, with what is in the picture. */
+/** The pixels of the map, which are used again. */
+let mapped: ImageData | null = null;
+
+/** The whole tube from end to end, with what is in the picture; `tones` are the grains' places on the scale of the field. */
 export function drawMap(
-  canvas: HTMLCanvasElement, frame: Frame, values: Field, tube: Welcome, lightness: boolean,
+  canvas: HTMLCanvasElement, frame: Frame, tones: Float32Array, values: Field, tube: Welcome, lightness: boolean,
   view: { middle: number; half: number }, colours: Ink,
 ): void {
   const context = canvas.getContext("2d");
@@ -162,16 +167,17 @@ export function drawMap(
   if (!context || canvas.clientWidth === 0) return;
   const density = Math.min(2, devicePixelRatio);
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-  canvas.width = Math.round(width * density);
-  canvas.height = Math.round(height * density);
+  const [columns, lines] = [Math.round(width * density), Math.round(height * density)];
+  if (canvas.width !== columns || canvas.height !== lines) [canvas.width, canvas.height] = [columns, lines];
   context.setTransform(density, 0, 0, density, 0, 0);
   const scale = stops(values, lightness);
-  const tones = partsOf(values, frame, tube);
   const place = (z: number) => (tube.heading > 0 ? z : tube.length - z) / tube.length;
   const reach = 1.15 * tube.reach;
   const thick = Math.max(1, (width / tube.length) * 0.8);
   // Ten thousand rectangles take a canvas longer than their pixels take to be set one by one.
-  const image = context.createImageData(canvas.width, canvas.height);
+  if (mapped?.width !== canvas.width || mapped.height !== canvas.height) mapped = context.createImageData(canvas.width, canvas.height);
+  const image = mapped;
+  image.data.fill(0);
   const pixels = new Uint32Array(image.data.buffer);
   const inks = Uint32Array.from({ length: 256 }, (_, k) => pixel(colourAt(scale, k / 255)));
   const unknown = pixel(colourAt(scale, NaN));
@@ -180,10 +186,11 @@ export function drawMap(
   for (let i = 0; i < frame.grains; i++) {
     const tone = tones[i];
     const colour = Number.isNaN(tone) ? unknown : inks[Math.round(255 * Math.min(1, Math.max(0, tone)))];
-    const left = Math.round(place(frame.position[3 * i + 2]) * image.width - 0.5 * across);
-    const top = Math.round(0.5 * image.height * (1 - frame.position[3 * i] / reach) - 0.5 * down);
-    for (let y = Math.max(0, top); y < Math.min(image.height, top + down); y++)
-      pixels.fill(colour, y * image.width + Math.max(0, left), y * image.width + Math.max(0, Math.min(image.width, left + across)));
+    const left = Math.round(place(frame.position[3 * i + 2]) * columns - 0.5 * across);
+    const top = Math.round(0.5 * lines * (1 - frame.position[3 * i] / reach) - 0.5 * down);
+    const [low, high] = [Math.max(0, left), Math.min(columns, left + across)];
+    for (let y = Math.max(0, top); y < Math.min(lines, top + down); y++)
+      for (let at = y * columns + low; at < y * columns + high; at++) pixels[at] = colour;
   }
   context.putImageData(image, 0, 0);
   const half = Math.min(0.5, view.half / tube.length);

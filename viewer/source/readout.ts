@@ -1,5 +1,5 @@
 import { Chart, ink, written } from "./charts";
-import { FIELDS } from "./fields";
+import { FIELDS, partsOf } from "./fields";
 import type { Film } from "./film";
 import { drawFlat } from "./flat";
 import { acrossOf, drawLoop, thresholds, wordsOf } from "./loop";
@@ -62,8 +62,9 @@ export class Readout {
     const lightness = scene?.lightness ?? false;
     if (isLong) this.spaceTime.draw(charts.spaceTime, tube, lightness, colours);
     const view = scene ? { middle: scene.middle, half: scene.halfShown() / 1.1 } : { middle: 0, half: tube.length };
-    drawMap(element<HTMLCanvasElement>("map"), frame, FIELDS[shown.field], tube, lightness, view, colours);
-    if (!scene) drawFlat(element<HTMLCanvasElement>("stage"), frame, FIELDS[shown.field], tube, lightness, colours);
+    const tones = scene?.values ?? partsOf(FIELDS[shown.field], frame, tube);
+    drawMap(element<HTMLCanvasElement>("map"), frame, tones, FIELDS[shown.field], tube, lightness, view, colours);
+    if (!scene) drawFlat(element<HTMLCanvasElement>("stage"), frame, tones, FIELDS[shown.field], tube, lightness, colours);
     this.showNumbers(shown, now);
   }
 

@@ -1,8 +1,8 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Ink } from "./charts";
-import { Bands, ForceScale } from "./bands";
-import { colourAt, type Field, partsOf, stops } from "./fields";
+import { Bands, ForceScale, type Images } from "./bands";
+import { type Colour, colourAt, type Field, partsOf, stops } from "./fields";
 import type { Frame, Welcome } from "./protocol";
 import { drawn, Side, Spheres, type Uniforms } from "./spheres";
 
@@ -49,6 +49,8 @@ export class Scene {
   private readonly wallUniforms: Uniforms;
   private readonly bands = new Bands();
   private readonly scaleTexture: three.DataTexture;
+  /** The colours that are in it. */
+  private scale: Colour[] = [];
   private frame: Frame | null = null;
   private stale = true;
   /** Part of the full resolution that is drawn: less where pictures take too long. */
@@ -59,7 +61,8 @@ export class Scene {
   private quick = 0;
   private wait = PATIENCE;
   private hasSign = false;
-  private values = new Float32Array(0);
+  /** Where each grain lies on the scale of the colours, from 0 to 1. */
+  values = new Float32Array(0);
 
   constructor(private readonly canvas: HTMLCanvasElement, private tube: Welcome) {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: false, alpha: false, preserveDrawingBuffer: true });
@@ -188,9 +191,12 @@ export class Scene {
     if (this.values.length !== number) this.values = new Float32Array(number);
     partsOf(field, frame, this.tube, this.values);
     const scale = stops(field, this.lightness);
-    const texels = this.scaleTexture.image.data as Uint8Array;
-    for (let i = 0; i < 256; i++) texels.set([...colourAt(scale, i / 255), 255], 4 * i);
-    this.scaleTexture.needsUpdate = true;
+    if (scale !== this.scale) {
+      this.scale = scale;
+      const texels = this.scaleTexture.image.data as Uint8Array;
+      for (let i = 0; i < 256; i++) texels.set([...colourAt(scale, i / 255), 255], 4 * i);
+      this.scaleTexture.needsUpdate = true;
+    }
     this.touch();
   }
 
@@ -298,28 +304,27 @@ export class Scene {
     return Math.min(oblique * this.halfShown(), LONGEST * this.tube.radius);
   }
 
-  /** At which places along the picture something at z appears: the tube is periodic. */
-  private images(): (z: number) => number[] {
+  /** Where something at z appears along the picture: the tube is periodic. */
+  private images(): Images {
     const { heading, length } = this.tube;
     const { middle } = this;
-    const half = this.halfSeen();
-    return (z) => {
-      const along = heading * (z - middle);
-      const places: number[] = [];
-      for (let k = Math.ceil((-half - along) / length); k <= (half - along) / length; k++) places.push(along + k * length);
-      return places;
-    };
+    const last = this.halfSeen();
+    return { first: (z) => along(heading * (z - middle)), last, each: length };
+
+    function along(place: number): number {
+      return place + Math.ceil((-last - place) / length) * length;
+    }
   }
 
   /** The grains that are in the picture: of a long tube few, of a short one with their images. */
-  private placeGrains(frame: Frame, images: (z: number) => number[]): void {
+  private placeGrains(frame: Frame, images: Images): void {
     const { grains, tube } = this;
     const { heading } = tube;
     this.camera.updateMatrixWorld();
     const projection = new three.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
     const { planes } = new three.Frustum().setFromProjectionMatrix(projection);
     // The near and the far end of the picture leave nothing out that its sides would not.
-    const sides = planes.slice(0, 4).map(({ normal, constant }) => [normal.x, normal.y, normal.z, constant]);
+    const sides = planes.slice(0, 4);
     grains.reserve(frame.grains * (1 + Math.ceil((2 * this.halfSeen()) / tube.length)));
     const [centre, radius, value] = [grains.centre.array, grains.radius.array, grains.value.array];
     this.grainUniforms.picked.value = -1;
@@ -328,8 +333,8 @@ export class Scene {
       const [x, y] = [frame.position[3 * i], heading * frame.position[3 * i + 1]];
       // With room for the ring round a grain that was picked.
       const room = -0.7 * frame.diameter[i];
-      for (const along of images(frame.position[3 * i + 2])) {
-        if (sides.some((side) => side[0] * along + side[1] * x + side[2] * y + side[3] < room)) continue;
+      for (let along = images.first(frame.position[3 * i + 2]); along <= images.last; along += images.each) {
+        if (sides.some(({ normal, constant }) => normal.x * along + normal.y * x + normal.z * y + constant < room)) continue;
         centre[3 * number] = along;
         centre[3 * number + 1] = x;
         centre[3 * number + 2] = y;
@@ -343,7 +348,7 @@ export class Scene {
   }
 
   /** The wall's spheres that can be in the picture. */
-  private placeWall(frame: Frame, images: (z: number) => number[]): void {
+  private placeWall(frame: Frame, images: Images): void {
     const { tube, wallSpheres } = this;
     const { heading } = tube;
     const spacing = tube.wavelength / tube.rings_per_wave;
@@ -363,7 +368,8 @@ export class Scene {
     if (frame.wall_spheres > 0) {
       wallSpheres.reserve(Math.ceil(frame.wall_spheres / each) * (1 + Math.ceil((2 * half) / tube.length)));
       for (let i = 0; i < frame.wall_spheres; i += each)
-        for (const along of images(frame.wall[3 * i + 2])) put(along, frame.wall[3 * i], frame.wall[3 * i + 1]);
+        for (let along = images.first(frame.wall[3 * i + 2]); along <= images.last; along += images.each)
+          put(along, frame.wall[3 * i], frame.wall[3 * i + 1]);
     } else {
       // Some of each ring and some of the rings, the same ones wherever one looks from.
       const round = Math.min(3, each);
@@ -395,7 +401,7 @@ export class Scene {
     let found = -1;
     const centre = new three.Vector3();
     for (let i = 0; i < frame.grains; i++) {
-      for (const along of images(frame.position[3 * i + 2])) {
+      for (let along = images.first(frame.position[3 * i + 2]); along <= images.last; along += images.each) {
         centre.set(along, frame.position[3 * i], heading * frame.position[3 * i + 1]).sub(origin);
         const ahead = centre.dot(direction);
         const room = (0.5 * frame.diameter[i]) ** 2 - centre.lengthSq() + ahead * ahead;
@@ -403,6 +409,23 @@ export class Scene {
         nearest = ahead - Math.sqrt(room);
         found = i;
       }
+    }
+    return found;
+  }
+
+  /** The grain after the picked one along the wave, or, where none is picked, the nearest to the middle of the picture. */
+  next(): number {
+    const { frame, picked, tube } = this;
+    if (!frame) return -1;
+    const place = (i: number) => tube.heading * frame.position[3 * i + 2];
+    const from = picked < 0 ? tube.heading * this.middle : place(picked);
+    let [best, found] = [Infinity, -1];
+    for (let i = 0; i < frame.grains; i++) {
+      const ahead = place(i) - from;
+      const round = ((ahead % tube.length) + tube.length) % tube.length;
+      const away = picked < 0 ? Math.min(round, tube.length - round) : round;
+      if (i === picked || away >= best) continue;
+      [best, found] = [away, i];
     }
     return found;
   }

@@ -105,6 +105,19 @@ export function takeFilm(canvas: HTMLCanvasElement, name: string, button: HTMLBu
   count();
 }
 
+/** Copies what is in a field; where the browser does not let a page do that, it is chosen for the keys to copy. */
+async function copy(field: HTMLInputElement, button: HTMLElement): Promise<void> {
+  const label = button.textContent;
+  field.select();
+  try {
+    await navigator.clipboard.writeText(field.value);
+    button.textContent = "copied";
+  } catch {
+    button.textContent = "press Ctrl+C";
+  }
+  setTimeout(() => (button.textContent = label), 2000);
+}
+
 /** What the address is made of, besides the course of the run. */
 type View = Omit<Link, "jump" | "turns" | "step" | "clock"> & { clock: number; playing: boolean };
 
@@ -159,7 +172,6 @@ export function listenToShare(address: Address, title: () => string, redraw: () 
   element("picture").onclick = () => takePicture(stage, title());
   const film = element<HTMLButtonElement>("film-button");
   film.onclick = () => takeFilm(stage, title(), film, redraw);
-  for (const id of ["link", "embed"])
-    element(`copy-${id}`).onclick = () => void navigator.clipboard?.writeText(element<HTMLInputElement>(id).value);
+  for (const id of ["link", "embed"]) element(`copy-${id}`).onclick = () => void copy(element<HTMLInputElement>(id), element(`copy-${id}`));
   addEventListener("hashchange", () => location.reload());
 }

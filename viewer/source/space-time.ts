@@ -1,5 +1,5 @@
 import { type Chart, type Ink, written } from "./charts";
-import { colourAt, css, FIELDS, stops } from "./fields";
+import { type Colour, colourAt, css, FIELDS, stops } from "./fields";
 import type { Frame, Welcome } from "./protocol";
 
 /** Waves from which on it is worth while to look at each by itself. */
@@ -7,26 +7,38 @@ export const FEWEST_WAVES = 6;
 /** Looks that are kept. */
 const MOST = 400;
 
+/** A look: a time in periods, and the mean velocity of the grains of each wave over its speed. */
+interface Look {
+  clock: number;
+  flows: Float32Array;
+  grains: Float32Array;
+}
+
 /** The flow of the grains that travel with each wave, as time goes on: where in a long tube a jam begins. */
 export class SpaceTime {
-  /** A look: a time in periods, and the mean velocity of the grains of each wave over its speed. */
-  private looks: { clock: number; flows: Float32Array; grains: Float32Array; frames: number }[] = [];
+  private looks: Look[] = [];
   /** Periods that a look takes. */
   private each = 0.5;
+  /** A column of colours for each look, how many of them are as they will stay, and the scale that they are of. */
+  private readonly image = document.createElement("canvas");
+  private painted = 0;
+  private scale: Colour[] = [];
 
   see(frame: Frame, tube: Welcome): void {
     if (tube.waves < FEWEST_WAVES) return;
-    this.looks = this.looks.filter(({ clock }) => clock <= frame.clock);
     let last = this.looks.at(-1);
+    if (last && last.clock > frame.clock) {
+      this.keep(({ clock }) => clock <= frame.clock);
+      last = this.looks.at(-1);
+    }
     if (!last || frame.clock >= last.clock + this.each) {
-      last = { clock: frame.clock, flows: new Float32Array(tube.waves), grains: new Float32Array(tube.waves), frames: 0 };
+      last = { clock: frame.clock, flows: new Float32Array(tube.waves), grains: new Float32Array(tube.waves) };
       this.looks.push(last);
       if (this.looks.length > MOST) {
-        this.looks = this.looks.filter((_, k) => k % 2 === 0);
+        this.keep((_, k) => k % 2 === 0);
         this.each *= 2;
       }
     }
-    last.frames += 1;
     for (let i = 0; i < frame.grains; i++) {
       const z = frame.position[3 * i + 2];
       const along = Math.floor((tube.heading * z) / tube.wavelength - frame.period);
@@ -44,17 +56,41 @@ export class SpaceTime {
         { text: "jammed: ⟨v_z⟩ = c", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.97)) },
       ],
     });
-    const scale = stops(FIELDS.axial, lightness);
-    const { context, x, y } = chart;
-    this.looks.forEach(({ clock, flows, grains }, k) => {
+    this.paint(tube.waves, stops(FIELDS.axial, lightness));
+    const { context, x, box } = chart;
+    context.imageSmoothingEnabled = false;
+    this.looks.forEach(({ clock }, k) => {
       const left = x.at(clock);
       const right = x.at(this.looks.at(k + 1)?.clock ?? Math.min(end, clock + this.each));
-      flows.forEach((sum, wave) => {
-        context.fillStyle = css(colourAt(scale, 0.5 + 0.5 * (sum / grains[wave])));
-        const top = y.at(wave + 1.5);
-        context.fillRect(left, top, Math.max(1, right - left + 0.5), y.at(wave + 0.5) - top);
-      });
+      context.drawImage(this.image, k, 0, 1, tube.waves, left, box.top, Math.max(1, right - left + 0.5), box.height);
     });
+  }
+
+  private keep(which: (look: Look, number: number) => boolean): void {
+    this.looks = this.looks.filter(which);
+    this.painted = 0;
+  }
+
+  /** Gives each look its column, as far as it has not got it. */
+  private paint(waves: number, scale: Colour[]): void {
+    const { image, looks } = this;
+    const context = image.getContext("2d");
+    if (!context) return;
+    if (image.height !== waves || scale !== this.scale) {
+      [image.width, image.height] = [MOST + 1, waves];
+      this.scale = scale;
+      this.painted = 0;
+    }
+    for (let k = this.painted; k < looks.length; k++) {
+      const column = context.createImageData(1, waves);
+      for (let wave = 0; wave < waves; wave++) {
+        const colour = colourAt(scale, 0.5 + 0.5 * (looks[k].flows[wave] / looks[k].grains[wave]));
+        column.data.set([...colour, 255], 4 * (waves - 1 - wave));
+      }
+      context.putImageData(column, k, 0);
+    }
+    // More may come to the last.
+    this.painted = Math.max(0, looks.length - 1);
   }
 
   /** What it shows, in words. */

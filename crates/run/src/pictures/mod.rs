@@ -16,7 +16,7 @@ use peristalsis_figures::{
 use crate::error::RunError;
 use crate::run::Run;
 use crate::scene::{refused, units};
-use crate::summary::Summary;
+use crate::summary::{Summary, word};
 use crate::tables::late_profile;
 
 use self::profile::{profile, wall};
@@ -94,7 +94,7 @@ fn title(configuration: &Configuration) -> String {
 /// What sets a run apart from most: its waveform, its body force.
 fn particular(configuration: &Configuration) -> Option<String> {
     let waveform = configuration.drive.waveform;
-    let waveform = (waveform != WaveformName::Sine).then(|| format!("{waveform:?}").to_lowercase());
+    let waveform = (waveform != WaveformName::Sine).then(|| word(waveform));
     let [x, y, z] = configuration.body.gravity;
     let force = match (x, y) {
         (0.0, 0.0) => configuration.axial_body_force().to_string(),

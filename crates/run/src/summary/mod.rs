@@ -13,6 +13,7 @@ use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 pub use late::Pumping;
 use late::{ForceOfContacts, axial_dispersion, error_of, residence_time};
 use local_flow::LocalFlow;
+pub(crate) use table::word;
 pub use written::{RowColumn, SummaryKey, label, row_columns, set_by, summary_keys};
 
 use crate::assemble::newtonian_reference;
@@ -23,7 +24,8 @@ use crate::trajectory::TrajectoryReport;
 use crate::warnings::Warning;
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Status {
     /// As long as it was meant to.
     Complete,

@@ -91,8 +91,8 @@ impl RunQuantity {
 #[rustfmt::skip]
 pub(super) const QUANTITIES: &[RunQuantity] = &[
     setting("seed", "1", "seed of the random numbers", Whole(|c| c.run.seed)),
-    setting("initial_state", "", "how the grains stood at t = 0", Text(|c| name(c.initial.state))).only_in_rows(),
-    result("status", "", "complete, or settled: ended early, after its transition", Text(|s| name(s.status))),
+    setting("initial_state", "", "how the grains stood at t = 0", Text(|c| word(c.initial.state))).only_in_rows(),
+    result("status", "", "complete, or settled: ended early, after its transition", Text(|s| word(s.status))),
     setting("width", "d", "w = 2 (a - b); missing under stress control", Optional(|c| c.drive.own(Parameter::Width))).only_in_rows().labelled("width w / d"),
     setting("force_amplitude", "m d/t^2", "f^P; missing under strain control", Optional(|c| c.drive.own(Parameter::ForceAmplitude))).only_in_rows().labelled("force amplitude f"),
     setting("strain_rate", "1/t", "c/lambda", Real(|c| c.drive.strain_rate)).only_in_rows().labelled("strain rate ε̇ t"),
@@ -102,7 +102,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     setting("radius", "d", "a, to the centres of the wall spheres", Real(|c| c.tube.radius)).only_in_rows().labelled("radius a / d"),
     setting("wavelength", "d", "lambda", Real(|c| c.tube.wavelength)).only_in_rows().labelled("wavelength λ / d"),
     setting("waves", "1", "waves in the tube", Whole(|c| c.tube.waves.into())).only_in_rows().labelled("waves"),
-    setting("arrangement", "", "how the wall spheres stand", Text(|c| name(c.tube.arrangement))).only_in_rows(),
+    setting("arrangement", "", "how the wall spheres stand", Text(|c| word(c.tube.arrangement))).only_in_rows(),
     setting("spheres_per_ring", "1", "wall spheres in a ring", Whole(|c| c.tube.spheres_per_ring.into())).only_in_rows().labelled("wall spheres a ring"),
     setting("rings_per_wave", "1", "rings in a wavelength", Whole(|c| c.tube.rings_per_wave.into())).only_in_rows().labelled("rings a wave"),
     result("time", "t", "time reached: where a run without a transition is censored", Real(|s| s.time)),
@@ -182,9 +182,11 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("revision", "", "revision of its source", Text(|_| REVISION.to_owned())),
 ];
 
-/// The name of a variant in lower case.
-fn name(variant: impl std::fmt::Debug) -> String {
-    format!("{variant:?}").to_lowercase()
+/// A choice in the word that it has in a configuration and in results.
+pub(crate) fn word(choice: impl serde::Serialize) -> String {
+    let text = serde_json::to_value(choice).ok();
+    text.and_then(|it| it.as_str().map(str::to_owned))
+        .unwrap_or_default()
 }
 
 /// Mean of the second half of a series less the mean of the first half; NaN below two values.
