@@ -228,8 +228,10 @@ fn of_run(error: &RunError) -> Advice {
                 folder.join(RunFolder::CONFIGURATION).display()
             ))
         }
+        RunError::NothingToResume { .. } => wrong(
+            "name the folder of a run, or its state.checkpoint; `peristalsis runs DIR` lists those below a folder",
+        ),
         RunError::Folder { .. }
-        | RunError::NothingToResume { .. }
         | RunError::Render(RenderError::Speed { .. })
         | RunError::Configuration(_)
         | RunError::NotPlaced

@@ -197,7 +197,11 @@ fn what_cannot_be_resumed() {
     let place = Place::new();
     place.refuses(
         "run --resume absent",
-        &["absent holds no run that can be continued", "config.toml"],
+        &[
+            "absent holds no run that can be continued",
+            "config.toml",
+            "peristalsis runs DIR",
+        ],
     );
     place.does("run SMALL --out whole");
     let before = place.inventory();
