@@ -73,7 +73,7 @@ pub struct Estimate {
     pub packing_seconds: f64,
     /// Expected seconds after that, from a short trial on this machine.
     pub expected_seconds: f64,
-    /// Threads that pay on this machine, with which the trial was computed.
+    /// Threads with which the trial was computed.
     pub threads: usize,
     /// Bytes of memory, about.
     pub memory_bytes: f64,
@@ -92,11 +92,23 @@ pub fn estimate(
     configuration: &Configuration,
     trajectory: Option<&TrajectoryRequest>,
 ) -> Result<Estimate, RunError> {
+    estimate_by(threads(configuration), configuration, trajectory)
+}
+
+/// The same of a run by so many threads.
+///
+/// # Errors
+/// As [`estimate`].
+pub fn estimate_by(
+    threads: usize,
+    configuration: &Configuration,
+    trajectory: Option<&TrajectoryRequest>,
+) -> Result<Estimate, RunError> {
     check_number(configuration)?;
     if let Some(request) = trajectory {
         TrajectoryPlan::new(request, configuration, 0, configuration.run.steps())?;
     }
-    let mut trial = trial(configuration)?;
+    let mut trial = trial(configuration, threads)?;
     trial.run.follow_orientations();
     let trajectory = trajectory
         .map(|request| trajectory::estimate(request, configuration, &trial.run, trial.scale))
@@ -106,7 +118,7 @@ pub fn estimate(
     // The end of the schedules is tried as well; a tube that cannot be packed in that shape is no fault.
     if !configuration.drive.schedules.is_empty()
         && let hardest = configuration.at_its_hardest()
-        && let Ok(later) = self::trial(&hardest)
+        && let Ok(later) = self::trial(&hardest, threads)
     {
         let later = later.warnings(&hardest).into_iter();
         let is_new = |warning: &Warning| warnings.iter().all(|known| known.key != warning.key);
@@ -133,7 +145,7 @@ pub fn estimate(
         si: si.map(|units| SiEstimate::of(configuration, units)),
         packing_seconds: trial.packing_seconds,
         expected_seconds: trial.expected_seconds,
-        threads: threads(configuration),
+        threads,
         memory_bytes: memory(configuration),
         trajectory,
         warnings,
@@ -247,13 +259,13 @@ fn smaller(configuration: &Configuration) -> (Configuration, f64, bool) {
 }
 
 /// Tries [`trial_steps`] of a run; of a large tube in a [smaller] one like it.
-fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
+fn trial(configuration: &Configuration, threads: usize) -> Result<Trial, RunError> {
     let (trial, scale, is_same_tube) = smaller(configuration);
     let steps = trial_steps(&trial);
     let packing = Instant::now();
     let mut run = Run::new(trial)?;
     let packing_seconds = scale * packing.elapsed().as_secs_f64();
-    run.compute_with(Instructions::widest(), threads(configuration))?;
+    run.compute_with(Instructions::widest(), threads)?;
     // The second half is timed, for a packing at rest has fewer contacts than a flow.
     let (mut start, mut first) = (Instant::now(), 0);
     let mut divergence = None;
@@ -306,7 +318,7 @@ mod tests {
         ] {
             let configuration = configuration(settings);
             let steps = trial_steps(&configuration);
-            let tried = trial(&configuration).expect("grains that fit");
+            let tried = trial(&configuration, threads(&configuration)).expect("grains that fit");
             assert_eq!(tried.run.simulation().step(), steps);
             assert_eq!(is_whole_run, steps == configuration.run.steps());
         }

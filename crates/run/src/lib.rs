@@ -27,7 +27,7 @@ mod warnings;
 
 pub use assemble::{PlacedGrains, assemble, scheduled_wavelengths, walls};
 pub use error::RunError;
-pub use estimate::{Estimate, estimate};
+pub use estimate::{Estimate, estimate, estimate_by};
 pub use folder::{RunFolder, Written, next_folder, read_state, write_state};
 pub use pace::Pace;
 pub use peristalsis_configuration::Configuration;

@@ -1,7 +1,7 @@
 //! The time and disk that a study would take.
 
 use peristalsis_observe::{COLUMNS, PROFILE, Quantity, WAVES};
-use peristalsis_run::{Warning, estimate, warnings};
+use peristalsis_run::{Warning, estimate_by, warnings};
 
 use crate::error::{Result, StudyError};
 use crate::plan::Plan;
@@ -68,8 +68,9 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
     let (mut seconds, mut tried) = (0.0, 0.0);
     for trial in trials {
         let configuration = &points[trial].configuration;
-        let estimate = estimate(configuration, None).map_err(StudyError::Trial)?;
-        seconds += estimate.expected_seconds * estimate.threads as f64;
+        // More threads would take more of the processor than one.
+        let estimate = estimate_by(1, configuration, None).map_err(StudyError::Trial)?;
+        seconds += estimate.expected_seconds;
         tried += work(configuration);
     }
     let replicates = f64::from(study.replicates);
