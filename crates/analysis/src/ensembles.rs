@@ -31,7 +31,7 @@ pub struct WidthEnsemble {
 
 /// Sorts a table of runs by width and estimates the transition times of each.
 ///
-/// One row a run, `width` beside `transitions`; answers in order of width. Columns for [`fit_law`](crate::fit_law) and
+/// One row per run, `width` beside `transitions`; answers in order of width. Columns for [`fit_law`](crate::fit_law) and
 /// its scatter follow from `fit`: mean, variance chi_tau, relative variance with errors.
 ///
 /// # Errors

@@ -20,7 +20,7 @@ pub(crate) struct RunTable {
 }
 
 impl RunTable {
-    /// Columns of one row a run, in any order.
+    /// Columns of one row per run, in any order.
     pub(crate) fn new(width: &[f64], transitions: &[Transition]) -> Result<Self, Error> {
         same_length(width.len(), transitions.len())?;
         checked(width, 0)?;

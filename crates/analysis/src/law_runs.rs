@@ -70,7 +70,7 @@ pub struct WindowRunsFit {
 ///
 /// `ln L = sum_observed ln f(t_i; tau(w_i), k) + sum_censored ln S(t_i; tau(w_i), k)`
 ///
-/// f and S of a [`Family`] with mean tau(w) by a [`Law`] and a shape k common to all widths; one row a run, `width`
+/// f and S of a [`Family`] with mean tau(w) by a [`Law`] and a shape k common to all widths; one row per run, `width`
 /// beside `transitions`. Censored runs count with the time that they were watched, so that w_c is not drawn toward the
 /// widths where few runs were long enough; runs at w >= w_c say nothing, and w_c lies above every width that saw a
 /// transition. At given w_c and k the likelihood is concave in (ln A, B) and solved by Newton's method; w_c is searched

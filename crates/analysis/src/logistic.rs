@@ -157,7 +157,7 @@ impl Fractions {
 ///
 /// `P(jammed) = 1/(1 + exp((w - w_half)/spread))`, by maximum likelihood
 ///
-/// One row a run; `jammed`: how the run ended, whatever it started from, so that the fraction falls with the width from
+/// One row per run; `jammed`: how the run ended, whatever it started from, so that the fraction falls with the width from
 /// either start. Intervals by profile likelihood. Where all runs jam up to one width and none from the next on, the
 /// likelihood has no maximum: the width is then the middle of the bracket, both intervals are the bracket, and the
 /// error is its length over sqrt(12); with mixed runs at one width between, that width, with its neighbours as the

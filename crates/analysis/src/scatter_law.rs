@@ -154,7 +154,7 @@ pub(crate) fn largest_with_scatter(common: &LawLikelihood) -> Result<(f64, f64),
 ///
 /// `tau = A (w_c - w)^-alpha`,   `chi_tau/tau^2 = C (w_c - w)^-q`,   gamma distributions of shape tau^2/chi_tau
 ///
-/// Maximum likelihood under censoring, one row a run. Where the scatter grows toward w_c a common shape as in
+/// Maximum likelihood under censoring, one row per run. Where the scatter grows toward w_c a common shape as in
 /// [`fit_law_to_runs`](crate::fit_law_to_runs) is wrong just where runs are censored and moves w_c and alpha; here it
 /// is fitted along. Standard errors from the observed information; intervals in the normal approximation, that of w_c
 /// in its logarithmic distance. The three probabilities are of likelihood ratios against chi^2 with 2 (chance), 1 and 1

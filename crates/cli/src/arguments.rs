@@ -23,7 +23,7 @@ use crate::commands::study::{StudyCommand, WorkArguments, time_span};
     version = concat!(env!("CARGO_PKG_VERSION")),
     propagate_version = true,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 3 a published row is not what its run gives; 129, 130, 138, 143 stopped by a signal (a second one, a second later, ends at once)."
+    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 3 a published row is not what its run gives; 129, 130, 138, 143 stopped by a signal, with everything saved (a second signal, a second later, ends at once)."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -38,24 +38,24 @@ pub(crate) enum Command {
     Runs(RunsArguments),
     /// Draw the figures of runs again, from their saved states; computes nothing.
     Figures(FiguresArguments),
-    /// Say what would run, and warn of what looks doubtful; runs nothing.
+    /// Say what would run and how long it would take, and warn of what looks doubtful; computes nothing.
     Check(CheckArguments),
     /// Write the spheres of a run, from its saved state on, for other programs to open.
     Trajectory(TrajectoryArguments),
     /// Draw the tube of a run, as picture or film: from the side, cut across, or wave by wave in time.
     Render(RenderArguments),
-    /// Watch and drive a tube in the browser, while the engine runs it.
+    /// Watch a tube in the browser and drive it by hand; or look at a recorded run or a study.
     View(ViewArguments),
     /// List the presets, or print one.
     Presets(PresetsArguments),
     /// Print the JSON schema of the configuration.
     Schema(SchemaArguments),
-    /// What a Newtonian fluid would do in such a tube (Shapiro, Jaffrin & Weinberg 1969).
+    /// Say how a Newtonian fluid would flow in such a tube (Shapiro, Jaffrin & Weinberg 1969).
     Newtonian(NewtonianArguments),
-    /// Ensembles of runs over grids of parameters, in a store that keeps them safe.
+    /// Plan, compute and export studies: many runs that differ in chosen keys, kept in a store.
     #[command(subcommand)]
     Study(StudyCommand),
-    /// Examine the claims of the source: run their studies and write the report.
+    /// Compare the claims of the source with runs, and write the report.
     Reproduce(ReproduceArguments),
     /// Run textbook experiments beside their analytic solutions.
     Validate(ValidateArguments),
@@ -69,10 +69,10 @@ pub(crate) struct ConfigurationArguments {
     /// Configuration in TOML; `-` reads it from standard input.
     #[arg(value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
-    /// Values to start from; a file's values go over them (see `peristalsis presets`).
+    /// Preset to start from; values of a file and of --set replace its own (see `peristalsis presets`).
     #[arg(long, value_name = "NAME", value_parser = presets())]
     pub(crate) preset: Option<String>,
-    /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
+    /// Sets a key, such as drive.width=2.7, whatever preset and file say; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
     /// How long to run, in periods of the wave: run.periods, of drive.strain_rate where the rate changes. With --resume, the
@@ -101,21 +101,21 @@ pub(crate) struct RunArguments {
     /// Folder for the results; it must not hold a run. Unless given: a new one, runs/NAME-1, runs/NAME-2, ...
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Threads to compute with, or auto: as many as pay for the number of grains. They change no bit.
+    /// Number of threads, or auto: as many as pay for the number of grains. Results do not depend on it.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
     pub(crate) threads: Threads,
-    /// Instructions to compute with; the default is the widest that the machine has.
+    /// Instruction set; the default is the widest of this machine. Results do not depend on it.
     #[arg(long, value_name = "SET", value_parser = one_of(Instructions::ALL))]
     pub(crate) instructions: Option<Instructions>,
     /// Go on with a run, to the same bits as if it had never stopped. DIR is its folder. FILE is a state, such as Python's
     /// `Simulation.save` writes: it goes on in a new folder.
     #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["file", "preset", "overrides", "seeds"])]
     pub(crate) resume: Option<PathBuf>,
-    /// Run once with each of these seeds, side by side, and show mean and scatter: 1..10, or 1,2,5. Each has a folder,
+    /// Run once with each of these seeds, such as 1..10 or 1,2,5, and show mean and scatter. The runs are in the folders
     /// DIR/seed-K; --resume DIR goes on with all of them.
     #[arg(long, value_name = "SEEDS", value_parser = seeds)]
     pub(crate) seeds: Option<Seeds>,
-    /// Time between two savings of the state; it is saved when the run begins and ends, too.
+    /// Time after which the state is saved again; it is also saved when the run begins and when it ends.
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = time_span)]
     pub(crate) checkpoint_every: Duration,
     #[command(flatten)]
@@ -126,7 +126,7 @@ pub(crate) struct RunArguments {
     /// Print the summary as JSON on standard output, and nothing else there.
     #[arg(long)]
     pub(crate) json: bool,
-    /// No progress on standard error: warnings and errors only.
+    /// No progress on standard error, only warnings and errors.
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -134,7 +134,7 @@ pub(crate) struct RunArguments {
 /// Which frames a run leaves beside its record.
 #[derive(Debug, Args)]
 pub(crate) struct FrameArguments {
-    /// Write the spheres frame by frame, in these formats: gsd, vtp, lammps. A resumed run goes on with what it wrote.
+    /// Write the spheres frame by frame, in these formats: gsd, vtp, lammps. With --resume the formats stay as they were.
     #[arg(
         long,
         value_name = "FORMAT,...",
@@ -143,7 +143,7 @@ pub(crate) struct FrameArguments {
         hide_possible_values = true
     )]
     pub(crate) trajectory: Vec<TrajectoryFormat>,
-    /// Time between two frames, in periods or, as in 2.5t, in time; a tenth of a period unless given.
+    /// Time between two frames, in periods or, as in 2.5t, in time; the default is a tenth of a period.
     #[arg(long, value_name = "SPAN", requires = "trajectory")]
     pub(crate) trajectory_every: Option<Span>,
     /// Frames in this part of the run only, in periods or time: 20:25, 100:, :5t.
@@ -169,10 +169,10 @@ pub(crate) struct TrajectoryArguments {
     /// How long to go on from the saved state, in periods or, as in 40t, in time; 0 is the state alone.
     #[arg(long, value_name = "SPAN", default_value = "0")]
     pub(crate) duration: Span,
-    /// Time between two frames; a tenth of a period unless given.
+    /// Time between two frames; the default is a tenth of a period.
     #[arg(long, value_name = "SPAN")]
     pub(crate) every: Option<Span>,
-    /// Folder for the frames, not that of a run; the default is DIR/from-state.
+    /// Folder for the frames, other than a run's; the default is DIR/from-state.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print what was written as JSON.
@@ -182,29 +182,29 @@ pub(crate) struct TrajectoryArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Prints an address on this machine that only you know; open it in a browser, through `ssh -L PORT:localhost:PORT` from afar. Ctrl-C ends."
+    after_help = "Prints an address on this machine that only you know; open it in a browser. From another machine: `ssh -L PORT:localhost:PORT`. Ctrl-C ends."
 )]
 pub(crate) struct ViewArguments {
     /// Folder of a run (its trajectory.gsd is played, if it holds one), trajectory (.gsd), configuration in TOML, or name
     /// of a preset; store of a study, folder of a reproduction, or table of rows of runs (.parquet, .csv).
     #[arg(value_name = "DIR|FILE|PRESET", default_value = "frictionless")]
     pub(crate) source: PathBuf,
-    /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
+    /// Sets a key, such as drive.width=2.7, whatever preset and file say; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// Compute the run of a folder anew, though it holds a trajectory.
+    /// Compute the run of a folder anew, even if the folder holds a trajectory.
     #[arg(long)]
     pub(crate) live: bool,
-    /// Compute, beginning with the saved state of a folder, not with its start.
+    /// Go on from the saved state of a folder instead of from the start.
     #[arg(long, conflicts_with = "overrides")]
     pub(crate) from_state: bool,
-    /// Port; a free one unless given.
+    /// Port; 0 is any free one.
     #[arg(long, value_name = "PORT", default_value_t = 0)]
     pub(crate) port: u16,
-    /// Folder for the states that are saved.
+    /// Folder for the states that you save on the page.
     #[arg(long, value_name = "DIR", default_value = "saved-states")]
     pub(crate) saves: PathBuf,
-    /// Threads to compute with, or auto: as many as pay for the number of grains. They change no bit.
+    /// Number of threads, or auto: as many as pay for the number of grains. Results do not depend on it.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
     pub(crate) threads: Threads,
 }
@@ -255,7 +255,7 @@ pub(crate) struct NewtonianArguments {
     /// Mean radius a, in the same unit.
     #[arg(long, value_name = "A", default_value_t = 1.5)]
     pub(crate) radius: f64,
-    /// Pressure rise a wavelength, P = a^2 Dp/(8 mu c lambda).
+    /// Pressure rise over a wavelength, P = a^2 Dp/(8 mu c lambda).
     #[arg(
         long,
         value_name = "P",
@@ -270,14 +270,14 @@ pub(crate) struct NewtonianArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Begins from the published rows of finished runs, computes a random sample of them again, compares it to the bit, and examines every claim. Called again it goes on where it was; all designs share their runs. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/ and again/. Ends with 3 where a published row is not what its run gives."
+    after_help = "Reads the published rows of finished runs, computes a random sample of them again, compares it to the bit, and examines every claim. Called again it goes on where it stopped; runs are shared by --quick, --full and --fresh. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/ and again/. The exit code is 3 where a published row is not what its run gives."
 )]
 pub(crate) struct ReproduceArguments {
-    /// How many of the published rows to compute again: a part of each study's, such as 1%, or as many as fit into a time,
-    /// such as 90s; 0% for none. Unless given: 3 minutes, and with --full none.
+    /// How many published rows to compute again: a part of each study's, such as 1%, or as many as fit into a time, such
+    /// as 90s; 0% is none. The default is 3 minutes, with --full none.
     #[arg(long, value_name = "PART|TIME", value_parser = extent, conflicts_with_all = ["quick", "fresh"])]
     pub(crate) check: Option<Extent>,
-    /// Seed of the draw, to draw the same runs again; a new one unless given, which is said.
+    /// Seed of the random sample, to draw the same rows again; the default is a new one, which is printed.
     #[arg(long, value_name = "N", conflicts_with_all = ["quick", "fresh"])]
     pub(crate) check_seed: Option<u64>,
     /// Compute what the published rows lack as well, in hours or days.
@@ -286,7 +286,7 @@ pub(crate) struct ReproduceArguments {
     /// Begin from nothing and compute every run, in days.
     #[arg(long, conflicts_with_all = ["quick", "import"])]
     pub(crate) fresh: bool,
-    /// Begin from nothing and compute a few runs of everything, in minutes: the way of each analysis, too little for verdicts.
+    /// Begin from nothing and compute a few runs of everything, in minutes: shows each analysis, too few runs for verdicts.
     #[arg(long)]
     pub(crate) quick: bool,
     /// Only these claims, such as F3,F6.
@@ -295,8 +295,8 @@ pub(crate) struct ReproduceArguments {
     /// Folder for report and runs; an older report in it is replaced.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     pub(crate) out: PathBuf,
-    /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from. Unless given: the folder
-    /// validation/results here or above.
+    /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from; the default is validation/results in
+    /// this folder or one above.
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub(crate) import: Vec<PathBuf>,
     #[command(flatten)]
@@ -318,13 +318,13 @@ impl ReproduceArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Writes validation.json, and a table, a text and figures for each case. Ends with 1 where a case failed."
+    after_help = "Writes validation.json, and a table, a text and figures for each case. The exit code is 1 where a case failed."
 )]
 pub(crate) struct ValidateArguments {
     /// Only these cases, such as normal-impact,haff.
     #[arg(long, value_name = "CASES", value_delimiter = ',', value_parser = cases(), hide_possible_values = true)]
     pub(crate) only: Vec<String>,
-    /// Fewer points and replicates, in some twenty seconds.
+    /// Fewer points and replicates: takes about twenty seconds.
     #[arg(long)]
     pub(crate) quick: bool,
     /// Folder for the results; older ones in it are replaced.

@@ -85,9 +85,9 @@ impl Grains {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Body {
-    /// Gravity [x, y, z]: the acceleration of every grain by its weight. z is the tube's axis, whichever way the wave
-    /// runs, x and y lie across it: [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an upright one. The wall has no
-    /// weight of its own. drive.body_force adds to it; units.acceleration gives it in SI.
+    /// Gravity [x, y, z] on the grains. z is the tube's axis, whichever way the wave runs; x and y lie across it:
+    /// [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an upright one. The wall has no weight. drive.body_force adds
+    /// to it; units.acceleration gives it in SI.
     #[schemars(extend("x-unit" = "d t^-2", "items" = {"type": "number", "minimum": -1e6, "maximum": 1e6}))]
     pub gravity: [f64; 3],
 }
@@ -95,7 +95,7 @@ pub struct Body {
 /// The tube: wall spheres in rings or at random places, periodic along its axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tube {
-    /// Mean radius a, to the centres of the wall spheres.
+    /// Mean radius a of the tube, to the centres of the wall spheres.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub radius: f64,
     /// Wavelength lambda.
@@ -115,16 +115,16 @@ pub struct Tube {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-unit" = "rad", "items" = {"type": "number", "minimum": -1e6, "maximum": 1e6}))]
     pub angles: Vec<f64>,
-    /// Place of each of them along the tube, 0 <= z < L.
+    /// Place z of each wall sphere along the tube, from 0 to below L; under arrangement = "file".
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-unit" = "d", "items" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
     pub places: Vec<f64>,
     /// Wall spheres in a ring.
     #[schemars(extend("x-unit" = "1", "minimum" = 3, "maximum" = 1_000_000))]
     pub spheres_per_ring: u32,
-    /// Rings in a wavelength: even under strain control, where they are staggered; under stress control an odd number
-    /// needs an even number of waves. Random and disordered walls have as many spheres as these rings; those of a file
-    /// stand without them.
+    /// Rings in a wavelength. Staggered rings under strain control need an even number; under stress control an odd number
+    /// needs an even number of waves. Random and disordered walls have as many spheres as so many rings would have; a wall
+    /// from a file does not use it.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub rings_per_wave: u32,
 }
@@ -192,7 +192,7 @@ pub struct Drive {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-unit" = "1", "items" = {"type": "number", "minimum": 0, "exclusiveMaximum": 1}))]
     pub phases: Vec<f64>,
-    /// Radius at each of them. Their shape alone counts: the largest becomes tube.radius, the least half of drive.width.
+    /// Radius at each phase. Only the shape counts: the largest becomes tube.radius, the least half of drive.width.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-unit" = "1", "items" = {"type": "number", "minimum": 0, "maximum": 1e6}))]
     pub radii: Vec<f64>,
@@ -203,9 +203,9 @@ pub struct Drive {
     /// source writes them. Flow rates are positive along the wave in either case.
     #[serde(default)]
     pub direction: WaveDirection,
-    /// Body force on the grains g, force over mass along the wave: negative is back pressure, against which the wave has to
-    /// pump. It is gravity along the wave, to which body.gravity adds. The pressure rise over a wavelength that both
-    /// stand for is N m (-g) lambda/(L pi a^2), g their part along the wave.
+    /// Body force g on the grains, force over mass along the wave. Negative is back pressure, against which the wave has to
+    /// pump. body.gravity adds to it. Both together stand for a pressure rise over a wavelength of
+    /// N m (-g) lambda/(L pi a^2).
     #[serde(default)]
     #[schemars(extend("x-unit" = "d t^-2", "minimum" = -1e6, "maximum" = 1e6))]
     pub body_force: f64,
@@ -300,10 +300,10 @@ impl Default for Wall {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Initial {
-    /// How the grains stand at t = 0: spread over the tube at rest, settled under gravity, gathered in the bellies and
-    /// moving with the wave, or placed by a program, which no file repeats.
+    /// How the grains stand at t = 0: spread over the tube at rest, settled under gravity, or gathered in the bellies and
+    /// moving with the wave. Only a program can place them otherwise.
     pub state: InitialState,
-    /// Velocity of every grain along the wave at t = 0. Missing: 0 from rest, the wave's speed when jammed.
+    /// Velocity of every grain along the wave at t = 0. Default: 0 from rest, the wave's speed from jammed.
     #[schemars(extend("x-unit" = "d t^-1", "minimum" = -1e9, "maximum" = 1e9, "default" = null))]
     pub axial_velocity: f64,
 }
@@ -312,14 +312,14 @@ pub struct Initial {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Run {
-    /// Length of the run in wave periods, rounded up to whole samples. They are those of drive.strain_rate: where a
-    /// schedule changes the rate, the wave runs more or fewer wavelengths (column period).
+    /// Length of the run in periods of drive.strain_rate, rounded up to whole samples. Where a schedule changes the strain
+    /// rate, the wave runs more or fewer wavelengths (column period).
     #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub periods: Option<f64>,
     /// Length of the run in time, rounded up to whole samples; the only choice for a static wave.
     #[schemars(extend("x-unit" = "t", "exclusiveMinimum" = 0, "maximum" = 1e12, "default" = null))]
     pub duration: f64,
-    /// Longest time step allowed; the step taken divides the time between two samples.
+    /// Largest time step allowed. The step is chosen so that a whole number of steps lies between two samples.
     #[schemars(extend("x-unit" = "t", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub time_step: f64,
     /// Steps from one sample to the next.
@@ -335,8 +335,8 @@ pub struct Run {
     /// Seed of the random numbers that place the grains.
     #[schemars(extend("x-unit" = "1", "maximum" = i64::MAX))]
     pub seed: u64,
-    /// Distance by which the neighbour search looks farther than contacts reach: it sets the speed, and the order of sums.
-    /// Missing: 0.3 of the largest grain diameter.
+    /// How much farther the neighbour search looks than contacts reach. It changes speed and rounding, not the physics.
+    /// Default: 0.3 of the largest grain diameter.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6, "default" = null))]
     pub neighbour_skin: f64,
 }
@@ -368,19 +368,19 @@ impl Run {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Observe {
-    /// Samples of the time series in one wave period; a static run has 200 samples in all. In a run of more than 262,144
-    /// samples every two neighbours become one, again and again: memory is bounded.
+    /// Samples of the time series in one period of the wave; with a static wave, 200 in the whole run. Beyond 262,144
+    /// samples every two neighbours become one, so that memory is bounded.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub samples_per_period: u32,
-    /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of one of them.
+    /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of a bin: it grows with their
+    /// number.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 100_000))]
     pub profile_bins: u32,
-    /// Part of the run, at its end, that late means and profiles are taken over.
+    /// Part of the run, at its end, over which late means and profiles are taken.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 1))]
     pub late_fraction: f64,
-    /// J/Jmax that the period average crosses at a transition, on its way from the initial state, 0 from rest and 1
-    /// jammed: from rest upward, or downward to back flow where the threshold is below 0; from jammed downward, or upward
-    /// where it is above 1.
+    /// J/Jmax that the average over a period crosses at a transition. From rest (J/Jmax = 0) it is crossed upward, or
+    /// downward if it is below 0; from jammed (J/Jmax = 1) downward, or upward if it is above 1.
     #[schemars(extend("x-unit" = "1", "minimum" = -2, "maximum" = 2))]
     pub transition_threshold: f64,
 }

@@ -78,7 +78,7 @@ pub(crate) struct TubeKeys {
     #[serde(flatten)]
     pub(crate) tube: Tube,
     /// Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the columns angle (rad)
-    /// and place (d), one sphere a line. Its path is that from the configuration file, or from where the program runs.
+    /// and place (d), one sphere per line. Its path is relative to the configuration file, with --set to where the program runs.
     #[serde(rename = "file")]
     #[schemars(extend("default" = null))]
     pub(crate) _file: Option<String>,
@@ -105,14 +105,13 @@ pub(crate) struct ContactKeys {
     pub(crate) normal: Normal,
     #[serde(flatten)]
     pub(crate) friction: CundallStrack,
-    /// Restitution e of two grains of the mean diameter that meet head-on at restitution_speed, instead of normal_damping
-    /// (linear law) or dissipation_time (Hertz law), which are resolved from it. Linear law: e = exp(-pi
-    /// beta/sqrt(k/m_ij - beta^2)), beta = eta/(2 m_ij), at any speed. Hertz law: by integration of the impact; e falls with
-    /// the speed.
+    /// Restitution e of two grains of the mean diameter that meet head-on. Give it instead of normal_damping (linear law) or
+    /// dissipation_time (Hertz law), which then follow. Linear law: e = exp(-pi beta/sqrt(k/m_ij - beta^2)), beta =
+    /// eta/(2 m_ij), at any speed. Hertz law: by integration of an impact at restitution_speed; e falls with the speed.
     #[schemars(extend("x-unit" = "1", "minimum" = 1e-3, "maximum" = 1))]
     pub(crate) restitution: Option<f64>,
-    /// Relative speed at which restitution holds. Missing: the speed of the wave, so that in a study of several strain rates
-    /// each has its own material; a static wave needs it.
+    /// Relative speed at which restitution holds under the Hertz law. Default: the speed of the wave. Give it in a study of
+    /// several strain rates, or each has its own material. A static wave needs it.
     #[schemars(extend("x-unit" = "d t^-1", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub(crate) restitution_speed: Option<f64>,
 }
@@ -123,8 +122,8 @@ pub(crate) struct ContactKeys {
 pub(crate) struct DriveKeys {
     #[serde(flatten)]
     pub(crate) drive: Drive,
-    /// Table of waveform = "table" instead of phases and radii: CSV with the columns phase (cycles) and radius, one point a
-    /// line. Its path is that from the configuration file, or from where the program runs.
+    /// Table of waveform = "table" instead of phases and radii: CSV with the columns phase (cycles) and radius, one point
+    /// per line. Its path is relative to the configuration file, with --set to where the program runs.
     #[serde(rename = "table")]
     #[schemars(extend("default" = null))]
     pub(crate) _table: Option<String>,
@@ -134,10 +133,10 @@ pub(crate) struct DriveKeys {
     /// Speed c of the wave; 0 is a static wave and needs run.duration.
     #[schemars(extend("x-unit" = "d t^-1", "minimum" = 0, "maximum" = 1e6))]
     pub(crate) wave_speed: Option<f64>,
-    /// How the drive's parameters follow time: "sudden" (constant from t = 0), "ramp" (the amplitude grows from nothing
-    /// within ramp_periods), a table such as { form = "ramp", parameter = "width", from = 3.0, to = 2.6, end = 100 } or
-    /// { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }, in which "course" instead of "steps"
-    /// goes from value to value in straight lines, or a list of such tables, not an empty one.
+    /// How parameters of the drive follow time. "sudden": constant from t = 0. "ramp": the amplitude grows from nothing
+    /// within ramp_periods. Or a table such as { form = "ramp", parameter = "width", from = 3.0, to = 2.6, end = 100 } or
+    /// { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }; with form = "course" straight lines
+    /// lead from value to value. Or a list of such tables, one for each parameter.
     #[schemars(extend("default" = "sudden"))]
     pub(crate) schedule: Option<ScheduleKeys>,
     /// Length of the ramp of schedule = "ramp", in wave periods.
@@ -163,13 +162,13 @@ pub(crate) enum ScheduleKeys {
 pub(crate) struct ScheduleTableKeys {
     /// Course in time: ramp takes from, to, start and end; steps and course take at and values.
     pub(crate) form: ScheduleFormName,
-    /// The parameter that follows the schedule. Missing: the amplitude of the drive (width under strain control,
+    /// The parameter that follows the schedule. Default: the amplitude of the drive (width under strain control,
     /// force_amplitude under stress control).
     pub(crate) parameter: Option<ScheduledParameterName>,
-    /// Value of a ramp until start, in the unit of the parameter. Missing: no drive (width 2 a, otherwise 0).
+    /// Value of a ramp until start, in the unit of the parameter. Default: no drive (width 2 a, otherwise 0).
     #[schemars(extend("x-unit" = "that of the parameter", "minimum" = 0, "maximum" = 1e6))]
     pub(crate) from: Option<f64>,
-    /// Value of a ramp from end on, in the unit of the parameter. Missing: the parameter's own value.
+    /// Value of a ramp from end on, in the unit of the parameter. Default: the parameter's own value.
     #[schemars(extend("x-unit" = "that of the parameter", "minimum" = 0, "maximum" = 1e6))]
     pub(crate) to: Option<f64>,
     /// When a ramp begins.
@@ -178,11 +177,11 @@ pub(crate) struct ScheduleTableKeys {
     /// When a ramp ends, after start.
     #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub(crate) end: Option<f64>,
-    /// When each of the values of steps begins to hold, or a course has it, ascending; before the first of steps the
-    /// parameter has its own value. A course jumps where two of its times are equal.
+    /// Times of the values, ascending. With steps a value holds from its time on, and before the first the parameter has
+    /// its own value. A course has a value at its time, and jumps where two times are equal.
     #[schemars(extend("x-unit" = "periods", "minItems" = 1, "items" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
     pub(crate) at: Option<Vec<f64>>,
-    /// The values of steps or of a course, as many as at, in the unit of the parameter.
+    /// Values of steps or of a course, one for each time of at, in the unit of the parameter.
     #[schemars(extend("x-unit" = "that of the parameter", "minItems" = 1, "items" = {"type": "number", "minimum": 0, "maximum": 1e6}))]
     pub(crate) values: Option<Vec<f64>>,
 }
@@ -231,20 +230,20 @@ pub(crate) enum ScheduledParameterName {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(default)]
 pub(crate) struct UnitsKeys {
-    /// Diameter of a grain whose diameter is 1 here: the unit of length d.
+    /// The unit of length d: diameter of a grain whose diameter is 1 in the other tables.
     #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub(crate) grain_diameter: Option<f64>,
-    /// Density of the grains' material; the unit of mass is the mass of a sphere of diameter d, m = pi density d^3/6.
+    /// Density of the grains' material. The unit of mass is m = pi density d^3/6.
     #[schemars(extend("x-unit" = "kg m^-3", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub(crate) density: Option<f64>,
-    /// Stiffness of a contact, what contact.normal_stiffness stands for: it fixes the unit of time, sqrt(m/k) for k = 1.
+    /// Stiffness of a contact in SI. With contact.normal_stiffness it fixes the unit of time, sqrt(m/k) for k = 1.
     #[schemars(extend("x-unit" = "N m^-1", "exclusiveMinimum" = 0, "maximum" = 1e15))]
     pub(crate) stiffness: Option<f64>,
-    /// Young's modulus, what contact.young_modulus stands for: it fixes the unit of time, sqrt(m/(Y d)) for Y = 1.
+    /// Young's modulus in SI. With contact.young_modulus it fixes the unit of time, sqrt(m/(Y d)) for Y = 1.
     #[schemars(extend("x-unit" = "Pa", "exclusiveMinimum" = 0, "maximum" = 1e15))]
     pub(crate) young_modulus: Option<f64>,
-    /// Frequency of the wave, c/lambda in SI; instead of drive.strain_rate and drive.wave_speed, with which the wave in SI
-    /// follows stiffness or young_modulus.
+    /// Frequency of the wave, c/lambda. Give it instead of drive.strain_rate or drive.wave_speed: with those the wave in SI
+    /// gets faster when stiffness or young_modulus grows.
     #[schemars(extend("x-unit" = "Hz", "minimum" = 0, "maximum" = 1e9))]
     pub(crate) wave_frequency: Option<f64>,
     /// Gravity [x, y, z] in SI, instead of body.gravity: [0, -9.81, 0] is a horizontal tube on Earth.

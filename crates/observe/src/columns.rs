@@ -91,7 +91,7 @@ pub const COLUMNS: &[Column] = &[
     row("body_work", "m d^2/t^2", BodyForce, "ledger: work of the body force", |s| s.ledger.body_work),
 ];
 
-/// The columns of the profile in the wave's frame, in order.
+/// The columns of the profile in the wave frame, in order.
 #[rustfmt::skip]
 pub const PROFILE: &[Quantity<ProfileBin>] = &[
     Quantity::new("position", "1", "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave", Real(|b| b.position)),

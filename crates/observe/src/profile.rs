@@ -119,7 +119,7 @@ impl Sums {
     }
 }
 
-/// Averages in bins of the position in the wave's frame, kept in blocks of time so that the late part of a run can be
+/// Averages in bins of the position in the wave frame, kept in blocks of time so that the late part of a run can be
 /// taken at its end, with errors.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WaveFrameProfile {
@@ -148,7 +148,7 @@ impl Outline {
     /// The waveform's values in so many bins.
     fn of(&mut self, waveform: Waveform, bins: usize) -> &[f64] {
         if self.0.is_empty() {
-            // The phase runs against the position in the wave's frame.
+            // The phase runs against the position in the wave frame.
             let value = |bin: usize| waveform.value(1.0 - (bin as f64 + 0.5) / bins as f64);
             self.0.extend((0..bins).map(value));
         }
@@ -388,7 +388,7 @@ impl WaveFrameProfile {
     }
 }
 
-/// The bin of a position in the wave's frame.
+/// The bin of a position in the wave frame.
 #[inline]
 fn bin_of(position: f64, bins: usize) -> usize {
     let folded = position - floor(position);

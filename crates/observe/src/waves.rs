@@ -76,7 +76,7 @@ impl WaveByWave {
         }
     }
 
-    /// Whether it can be what was seen of so many waves, with so many samples a period.
+    /// Whether it can be what was seen of so many waves, with so many samples per period.
     pub fn fits(&self, waves: usize, samples_per_period: u64) -> bool {
         self.sums.len() == waves
             && self.samples_per_period == samples_per_period.max(1)

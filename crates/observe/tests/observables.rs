@@ -124,7 +124,7 @@ fn the_profile_holds_each_grain_once_and_its_velocity_along_the_wave() {
             .map(|bin| bin.density.0 * bin.axial_velocity.0)
             .sum();
         assert!((momentum * 0.5 * 2.0 - heading * 1.4).abs() < 1e-9);
-        // R = a + b sin(2 pi phase), and the phase runs against the position in the wave's frame.
+        // R = a + b sin(2 pi phase), and the phase runs against the position in the wave frame.
         for bin in &bins {
             let radius = 6.0 - 0.5 * (core::f64::consts::TAU * bin.position).sin();
             assert!((bin.radius - radius).abs() < 1e-9, "{bin:?}");
@@ -221,7 +221,7 @@ fn what_the_wall_does_is_what_the_grains_feel() {
 #[test]
 fn the_parts_of_a_wave_have_their_own_forces() {
     for heading in [1.0, -1.0] {
-        // R = 6 - sin(2 pi position)/2 in the wave's frame.
+        // R = 6 - sin(2 pi position)/2 in the wave frame.
         let place = |position: f64| (heading * 10.0 * position).rem_euclid(20.0);
         let bodies = Bodies::grains_at_rest(
             vec![

@@ -139,7 +139,7 @@ impl Newtonian {
 
     /// Mean flow rate Q [pi a^2 c], positive along the wave.
     ///
-    /// Q = 1 + phi^2/2 + q with the flow in the wave's frame q = -[(1 - phi^2)^2 + P (1 - phi^2)^(7/2)]/(1 + 3 phi^2/2).
+    /// Q = 1 + phi^2/2 + q with the flow in the wave frame q = -[(1 - phi^2)^2 + P (1 - phi^2)^(7/2)]/(1 + 3 phi^2/2).
     ///
     /// Examples
     /// --------

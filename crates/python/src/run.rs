@@ -357,7 +357,7 @@ impl Run {
         Table::made(self.look(py, |run| timeseries_table(run)))
     }
 
-    /// The late profile in the wave's frame.
+    /// The late profile in the wave frame.
     fn profile(&self, py: Python<'_>) -> PyResult<Table> {
         Table::made(self.look(py, |run| profile_table(run)))
     }

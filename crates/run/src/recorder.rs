@@ -12,7 +12,7 @@ use peristalsis_observe::{
 /// between the branches of the flow is known only when many runs have ended.
 pub const THRESHOLDS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
-/// Samples, period averages, the search for the transition, the profile in the wave's frame and the flow of each wave.
+/// Samples, period averages, the search for the transition, the profile in the wave frame and the flow of each wave.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Recorder {
     observer: Observer,
@@ -201,7 +201,7 @@ impl Recorder {
         self.escaped_most
     }
 
-    /// The profile in the wave's frame.
+    /// The profile in the wave frame.
     pub fn profile(&self) -> &WaveFrameProfile {
         &self.profile
     }

@@ -12,7 +12,7 @@ use crate::run::Run;
 use crate::spheres::{SPHERE, seen_spheres};
 use crate::{REVISION, VERSION};
 
-/// The time series: one row a sample, one column for each row of [`COLUMNS`] that applies.
+/// The time series: one row per sample, one column for each row of [`COLUMNS`] that applies.
 ///
 /// # Errors
 /// None that a caller can mend: the columns are of equal length.
@@ -25,7 +25,7 @@ pub fn timeseries_table(run: &Run) -> Result<Table, FormatError> {
     table(run, quantities, run.recorder().samples())
 }
 
-/// The profile in the wave's frame over the late part of the run: one row a bin.
+/// The profile in the wave frame over the late part of the run: one row per bin.
 ///
 /// # Errors
 /// None that a caller can mend: the columns are of equal length.

@@ -17,10 +17,10 @@ use sha2::{Digest, Sha256};
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Record {
-    /// Columns of the time series. Missing: all.
+    /// Columns of the time series. Default: all.
     #[schemars(extend("minItems" = 1, "items" = {"type": "string", "enum": column_names()}))]
     pub columns: Option<Vec<String>>,
-    /// Whether the profile in the wave's frame is kept.
+    /// Whether the profile in the wave frame is kept.
     pub profile: bool,
     /// Whether the flow of each wave over each period is kept, waves.parquet: J/Jmax and number of the grains between two
     /// throats, a row for each wave of each period.
@@ -28,7 +28,7 @@ pub struct Record {
     #[schemars(extend("default" = false))]
     pub waves: bool,
     /// Whether the spheres as they stand at the end are kept, snapshot.parquet: places along the wave and across it,
-    /// diameters, axial velocities, a row a sphere.
+    /// diameters, axial velocities, one row per sphere.
     #[serde(skip_serializing_if = "Not::not")]
     #[schemars(extend("default" = false))]
     pub snapshot: bool,

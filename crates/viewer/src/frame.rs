@@ -35,7 +35,7 @@ pub(crate) struct Head {
     pub(crate) playing: bool,
     /// Whether the run diverged, so that no frame follows.
     pub(crate) ended: bool,
-    /// Speed asked for in periods a second; null is as fast as possible.
+    /// Speed asked for in periods per second; null is as fast as possible.
     pub(crate) speed: Option<f64>,
     pub(crate) step: u64,
     pub(crate) time: f64,
@@ -195,7 +195,7 @@ pub(crate) fn of_wall(wall: &Wall) -> (usize, usize) {
 }
 
 #[cfg(feature = "server")]
-/// A recorded frame; a prescribed wall has so many spheres a ring.
+/// A recorded frame; a prescribed wall has so many spheres per ring.
 pub(crate) fn of_recording(head: &Head, frame: &Frame, spheres_per_ring: usize) -> Vec<u8> {
     let grains = frame.grains;
     let spin = frame.rotation.as_ref();

@@ -35,7 +35,7 @@ impl Onlooker {
         self.contacts = shown;
     }
 
-    /// The bytes of a message with the present frame, of a run that goes on or rests, at a speed in periods a second.
+    /// The bytes of a message with the present frame, of a run that goes on or rests, at a speed in periods per second.
     pub fn frame(&mut self, run: &Run, playing: bool, speed: Option<f64>) -> Vec<u8> {
         let contacts = match self.contacts {
             true => contacts_of(run),

@@ -21,7 +21,7 @@ use crate::within::Within;
 pub(crate) const FRAME: f64 = 0.033;
 /// Seconds after which a frame looks whether its time is over, at the latest.
 const PATIENCE: f64 = 0.004;
-/// Largest speed, in periods a second.
+/// Largest speed, in periods per second.
 const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed more sees a gap.
 const ROWS: usize = 256;

@@ -1,4 +1,4 @@
-//! `peristalsis runs`: a line a run, with what came out of it.
+//! `peristalsis runs`: one line per run, with what came out of it.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -107,7 +107,7 @@ fn presets_and_examples_give_no_warning() {
 
 #[test]
 fn each_warning_comes_when_it_is_due_and_alone() {
-    // A contact lasts 2.22, a fifteenth of it is 0.148; a run of 20 samples a period halves steps of 0.3 and 0.25. The fine
+    // A contact lasts 2.22, a fifteenth of it is 0.148; a run of 20 samples per period halves steps of 0.3 and 0.25. The fine
     // lattice stays tight also where the wave opens the tube wide.
     for (preset, doubtful, nearly, key) in [
         (

@@ -90,7 +90,7 @@ fn timing(
     if !(samples <= most && period.is_finite()) {
         let keys = [context.written(LENGTHS), "observe.samples_per_period"];
         let message = format!("a run of {samples:e} samples is beyond reach");
-        let help = format!("at most {most:e} samples: a shorter run, or fewer samples a period");
+        let help = format!("at most {most:e} samples: a shorter run, or fewer samples per period");
         return context.refuse(ProblemKind::OutOfRange, &keys, message, help);
     }
     let periods = samples / per_period;

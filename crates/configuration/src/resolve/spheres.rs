@@ -23,14 +23,14 @@ const FILES: [FileKey; 2] = [
         name: "file",
         columns: "angle,place",
         into: ["angles", "places"],
-        help: "then a line a sphere: its angle [rad] and its place z [d]",
+        help: "then one line per sphere: its angle [rad] and its place z [d]",
     },
     FileKey {
         table: "drive",
         name: "table",
         columns: "phase,radius",
         into: ["phases", "radii"],
-        help: "then a line a point: its phase, from 0 to below 1, and the radius there",
+        help: "then one line per point: its phase, from 0 to below 1, and the radius there",
     },
 ];
 

@@ -56,7 +56,7 @@ fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
             (
                 &keys[..],
                 format!(
-                    "an odd number of rings a wave ({rings}) in an odd number of waves ({waves}): alternate rings are turned by half a spacing, and this lattice does not close at the seam"
+                    "an odd number of rings per wave ({rings}) in an odd number of waves ({waves}): alternate rings are turned by half a spacing, and this lattice does not close at the seam"
                 ),
                 format!("take tube.waves = {waves_help}, or tube.rings_per_wave = {rings_help}"),
             )
@@ -77,7 +77,7 @@ pub(super) fn check_reach(tube: &Tube, reach: f64, context: &mut Context<'_>) {
             ProblemKind::OutOfRange,
             &["tube.rings_per_wave", "tube.spheres_per_ring"],
             format!("a wall so dense that a grain meets {met:.0} of its spheres at once"),
-            format!("at most {most}: take fewer rings a wave or spheres a ring"),
+            format!("at most {most}: take fewer rings per wave or spheres per ring"),
         );
     }
 }

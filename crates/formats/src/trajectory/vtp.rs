@@ -1,4 +1,4 @@
-//! Frames as VTK polydata, a file a frame, with an index that gives each its time.
+//! Frames as VTK polydata, one file per frame, with an index that gives each its time.
 //!
 //! `trajectory.pvd` lists the spheres: points with type (0 grain, 1 wall), diameter, velocity and, where grains turn,
 //! angular velocity and orientation. `contacts.pvd` lists the contacts: lines from centre to centre with normal and

@@ -68,7 +68,7 @@ pub struct ElasticNetwork {
     /// Stiffness k_w of the spring between lattice neighbours; stress control.
     #[schemars(extend("x-unit" = "m t^-2", "minimum" = 0, "maximum" = 1e12))]
     pub spring_stiffness: f64,
-    /// Natural length l of these springs; stress control. Missing: 0.7 of the mean distance of lattice neighbours. An
+    /// Natural length l of these springs; stress control. Default: 0.7 of the mean distance of lattice neighbours. An
     /// unstretched network buckles: keep it below the distance of neighbours.
     #[schemars(extend("x-unit" = "d", "minimum" = 0, "maximum" = 1e6, "default" = null))]
     pub natural_length: f64,

@@ -6,7 +6,7 @@ use crate::real::Real;
 
 /// Rings of M spheres, an axial distance s apart; staggered ones are turned by pi/M in turn, aligned ones are not.
 ///
-/// Ring k stands at zeta_k = k s, s = lambda/(rings a wavelength); sphere i of it at the angle (2 i + (k mod 2)) pi/M,
+/// Ring k stands at zeta_k = k s, s = lambda/(rings per wavelength); sphere i of it at the angle (2 i + (k mod 2)) pi/M,
 /// 2 i pi/M where they are aligned. The number of staggered rings in the whole tube is even, so that the pattern closes
 /// at the seam.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -19,7 +19,7 @@ pub struct SegmentDrive {
     #[schemars(extend("x-unit" = "1", "minimum" = 2, "maximum" = MOST_SEGMENTS))]
     pub segments: u32,
     /// The segments in the order in which they close, counted from 1 along the wave, each once; waveform = "segments".
-    /// Missing: one after the other along the wave.
+    /// Default: one after the other along the wave.
     #[schemars(extend("x-unit" = "1", "items" = {"type": "integer", "minimum": 1, "maximum": MOST_SEGMENTS}, "default" = null))]
     pub order: Vec<u32>,
     /// Part of the period for which a segment is closed; duty + rise + fall is at most 1; waveform = "segments".

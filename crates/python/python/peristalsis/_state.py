@@ -405,7 +405,7 @@ class State:
     # Tables
 
     def timeseries(self) -> Table:
-        """What was measured so far, one row a sample.
+        """What was measured so far, one row per sample.
 
         ``t["flow_rate_ratio"]`` is a column as an array; `Table.to_pandas`, `Table.to_polars` and `Table.to_xarray` are
         frames with units, and ``pyarrow.table(t)`` takes it without a copy.
@@ -426,7 +426,7 @@ class State:
         return self._run.timeseries()
 
     def profile(self) -> Table:
-        """Profile in the wave's frame over the late part of what was measured, one row a bin.
+        """Profile in the wave frame over the late part of what was measured, one row per bin.
 
         Returns
         -------
@@ -450,7 +450,7 @@ class State:
         Returns
         -------
         Table
-            One row a wave and period.
+            One row per wave and period.
 
         Examples
         --------

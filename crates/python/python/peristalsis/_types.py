@@ -126,7 +126,7 @@ class Keywords(TypedDict, total=False):
     """drive.fall. Part of the period in which a segment opens; waveform = "segments". (Unit: periods.)"""
     file: str
     """tube.file. Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the
-    columns angle (rad) and place (d), one sphere a line. Its path is that from the configuration file, or from
+    columns angle (rad) and place (d), one sphere per line. Its path is that from the configuration file, or from
     where the program runs."""
     force_amplitude: float
     """drive.force_amplitude. Amplitude f^P of the radial force on each wall sphere; stress control. (Unit: m d
@@ -268,7 +268,7 @@ class Keywords(TypedDict, total=False):
     run.duration. (Unit: t^-1.)"""
     table: str
     """drive.table. Table of waveform = "table" instead of phases and radii: CSV with the columns phase (cycles) and
-    radius, one point a line. Its path is that from the configuration file, or from where the program runs."""
+    radius, one point per line. Its path is that from the configuration file, or from where the program runs."""
     tangential_damping: float
     """contact.tangential_damping. Tangential damping eta_t. Without effect while both frictions are 0. (Unit: m
     t^-1.)"""

@@ -43,7 +43,7 @@ class Widget(anywidget.AnyWidget):
     playing : bool
         Whether the simulation goes on by itself, while no cell runs.
     speed : float or None
-        How fast, in periods a second at most; None is as fast as it can.
+        How fast, in periods per second at most; None is as fast as it can.
 
     Examples
     --------

@@ -184,7 +184,7 @@ def _with_error(value: float, error: float) -> str:
 
 
 def profile(simulation: Simulation, column: str = "density", ax: Axes | None = None, *, label: str | None = None, **line: Any) -> Axes:
-    """A column of the late profile against the position in the wave's frame, with the band of its error where it has one.
+    """A column of the late profile against the position in the wave frame, with the band of its error where it has one.
 
     Velocities are drawn in units of the wave's speed c, all else in the unit of its column.
 

@@ -28,7 +28,7 @@ pub(super) fn warning(
     if passing > LEAKING_RADIUS {
         let message = format!(
             "the lattice leaks where the tube is widest (R = {widest:.2}): a sphere of radius {passing:.3} passes between \
-             its spheres, and soft grains squeeze through; take more spheres a ring or more rings a wave"
+             its spheres, and soft grains squeeze through; take more spheres per ring or more rings per wave"
         );
         return Some(Warning { key, message });
     }
@@ -41,8 +41,8 @@ pub(super) fn warning(
     let part = parts.into_iter().fold(0.0, f64::max);
     let message = format!(
         "a grain as fast as the wave has {part:.2} of the energy that it needs to pass between the wall's spheres where \
-         the tube is widest: from about {LEAKING_ENERGY} on grains escape (`escaped` counts them); take more spheres a \
-         ring and more rings a wave, or a lower drive.strain_rate"
+         the tube is widest: from about {LEAKING_ENERGY} on grains escape (`escaped` counts them); take more spheres \
+         per ring and more rings per wave, or a lower drive.strain_rate"
     );
     (part > LEAKING_ENERGY).then_some(Warning { key, message })
 }

@@ -74,11 +74,11 @@ fn left(run: &Run, is_too_dense: bool) -> Option<Warning> {
         _ if is_too_dense => ("grains.volume_fraction", "fewer grains"),
         Control::Strain { .. } => (
             "tube.rings_per_wave",
-            "more spheres a ring and more rings a wave, or a lower drive.strain_rate",
+            "more spheres per ring and more rings per wave, or a lower drive.strain_rate",
         ),
         Control::Stress { .. } => (
             "wall.spring_stiffness",
-            "a stiffer wall, more spheres a ring and more rings a wave, or a weaker drive.force_amplitude",
+            "a stiffer wall, more spheres per ring and more rings per wave, or a weaker drive.force_amplitude",
         ),
     };
     let message = format!(

@@ -78,7 +78,7 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
             "at this {name} a period of the wave takes {steps:.1e} steps. The flow of hard grains hardly depends on \
                  their {name} while overlaps stay small: {softer:.2e} {unit}, with units.wave_frequency = {frequency:.2e}, \
                  still keeps that of two grains that meet at the wave's speed at {:.0} % of a diameter, and takes {fewer:.1e} \
-                 steps a period (check with a harder run){}",
+                 steps per period (check with a harder run){}",
             100.0 * SMALL_OVERLAP,
             scaled_with(configuration, name, value / softer)
         );

@@ -1,4 +1,4 @@
-//! The tables of a study: a row a run.
+//! The tables of a study: one row per run.
 
 use std::fs;
 use std::path::{Path, PathBuf};

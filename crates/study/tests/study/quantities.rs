@@ -34,7 +34,7 @@ fn page() -> String {
          in objects of their own: `throat_density` is `density` in `throat`.\n\n{head}{outcome}\n\
          ## The time series\n\n\
          Columns of friction, of an elastic wall and of a body force are there in runs that have these.\n\n{head}{}\n\
-         ## The profile in the wave's frame\n\n{head}{}\n\
+         ## The profile in the wave frame\n\n{head}{}\n\
          ## The flow wave by wave\n\n{head}{}",
         rows(COLUMNS.iter().map(|column| &column.quantity)),
         rows(PROFILE),

@@ -132,7 +132,7 @@ fn frames_come_in_any_order_as_they_were_computed() {
                 near(wall, &arrays(&bodies.position[n..]));
                 assert_eq!(frame.head["wall_spheres"], bodies.position.len() - n);
             } else {
-                // R = 1.5 + 0.2 sin(2 pi (z/lambda + t/T)), 14 rings a wave, running towards -z.
+                // R = 1.5 + 0.2 sin(2 pi (z/lambda + t/T)), 14 rings per wave, running towards -z.
                 assert_eq!(wall.len(), 14);
                 let phase = frame.head["period"].as_f64().unwrap();
                 for (ring, &radius) in wall.iter().enumerate() {

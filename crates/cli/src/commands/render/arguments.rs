@@ -50,7 +50,7 @@ pub(crate) struct RenderArguments {
         alias = "color"
     )]
     pub(crate) colour: Field,
-    /// Values of the first and the last colour; those that suit the field unless given.
+    /// Values of the first and the last colour; the default suits the field.
     #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
     pub(crate) range: Option<(f64, f64)>,
     /// How the wall looks from the side.
@@ -59,19 +59,20 @@ pub(crate) struct RenderArguments {
     /// What stands still in a film from the side.
     #[arg(long, value_name = "WHAT", value_parser = one_of(EYES), default_value = "tube")]
     pub(crate) eye: Eye,
-    /// Where a section is, as z in d; the middle of the tube unless given.
+    /// Place z of a section, in d; the default is the middle of the tube.
     #[arg(long, value_name = "Z", conflicts_with = "phase")]
     pub(crate) place: Option<f64>,
-    /// Where a section is, as a phase (z - c t)/lambda: it moves with the wave.
+    /// Place of a section as a phase (z - c t)/lambda, which moves with the wave.
     #[arg(long, value_name = "PHASE", allow_negative_numbers = true)]
     pub(crate) phase: Option<f64>,
-    /// Draw the contacts, as thick as their normal force, between smaller grains; not of a trajectory, which has no forces.
+    /// Draw the contacts as lines, thick where the normal force is large, between smaller grains; not from a trajectory,
+    /// which holds no forces.
     #[arg(long)]
     pub(crate) contacts: bool,
     /// Wavelengths that a side view shows at most.
     #[arg(long, value_name = "N", default_value_t = 2.0)]
     pub(crate) waves: f64,
-    /// Pixels across, 16 to 16384; 2400 for a picture and 960 for a film unless given, half of it for a section.
+    /// Width in pixels, 16 to 16384; the default is 2400 for a picture, 960 for a film, and half of these for a section.
     #[arg(long, value_name = "PIXELS")]
     pub(crate) width: Option<u32>,
     /// The page.
@@ -83,31 +84,31 @@ pub(crate) struct RenderArguments {
     /// Make a film, as GIF unless --format or the ending of --out says otherwise.
     #[arg(long)]
     pub(crate) film: bool,
-    /// What is made; by the ending of --out unless given.
+    /// Format; the default follows from the ending of --out.
     #[arg(long, value_name = "FORMAT", value_parser = one_of(FORMATS))]
     pub(crate) format: Option<Format>,
-    /// Where the instants are from.
+    /// Where the frames come from.
     #[arg(long, value_name = "ORIGIN", value_enum)]
     pub(crate) from: Option<Origin>,
     /// GSD trajectory of this run; the default is DIR/trajectory.gsd.
     #[arg(long, value_name = "FILE")]
     pub(crate) trajectory: Option<PathBuf>,
-    /// Instant of a picture, in periods of the run or, as in 40t, in time; the last one unless given.
+    /// Instant of a picture, in periods of the run or, as in 40t, in time; the default is the last one.
     #[arg(long, value_name = "SPAN")]
     pub(crate) at: Option<Span>,
-    /// Part of the run that a film shows, in periods or time: 20:25, 100:, :5t; all unless given.
+    /// Part of the run that a film shows, in periods or time: 20:25, 100:, :5t; the default is all.
     #[arg(long, value_name = "FROM:TO")]
     pub(crate) window: Option<Window>,
-    /// How long a film goes on from the saved state, in periods or time; two periods unless given.
+    /// How long a film goes on from the saved state, in periods or time; the default is two periods.
     #[arg(long, value_name = "SPAN", conflicts_with = "window")]
     pub(crate) duration: Option<Span>,
-    /// Time between two frames of a film; every frame of a trajectory, or a twentieth of a period unless given.
+    /// Time between two frames of a film; the default is every frame of a trajectory, or else a twentieth of a period.
     #[arg(long, value_name = "SPAN")]
     pub(crate) every: Option<Span>,
-    /// Frames a second.
+    /// Frames per second.
     #[arg(long, value_name = "N", default_value_t = 20.0)]
     pub(crate) fps: f64,
-    /// File for the picture or film, which is replaced; the default is DIR/tube-VIEW with the format's ending.
+    /// File for the picture or film; one that exists is replaced. The default is DIR/tube-VIEW with the format's ending.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print what was made as JSON.

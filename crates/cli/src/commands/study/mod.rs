@@ -21,27 +21,27 @@ use crate::failure::Failure;
 /// What to do with a study.
 #[derive(Debug, Subcommand)]
 pub(crate) enum StudyCommand {
-    /// Say what a study would run, and what time and disk it would take; runs nothing.
+    /// Say what a study would run, and how much time and disk it would take; computes nothing.
     Plan(PlanArguments),
-    /// Compute what is missing; may be stopped, called again, and called several times at once.
+    /// Compute the runs that are missing; may be stopped, called again, and called several times at once.
     Run(RunArguments),
     /// Write a job script for a cluster, whose tasks work on one store.
     Submit(SubmitArguments),
     /// Say how far a study is.
     Status(StatusArguments),
-    /// Say all that is known of a run: what has become of it, and why.
+    /// Say all that is known of one run, and why it is as it is.
     Why(WhyArguments),
-    /// Let runs be computed again; their files are moved aside.
+    /// Mark runs to be computed again; their files are moved aside.
     Retry(RetryArguments),
     /// Check the hashes of all finished runs; what does not match is moved aside.
     Verify(StoreArguments),
-    /// Make the index of a store again from its files.
+    /// Make the index of a store anew from its files.
     Scan(StoreArguments),
-    /// Write the tables of a study: a row a run.
+    /// Write the tables of a study: one row per run.
     Export(ExportArguments),
     /// Write the finished runs of a store to one archive.
     Pack(PackArguments),
-    /// Take finished runs from tables or archives, by their identity.
+    /// Add finished runs from tables or archives, by their identity.
     Import(ImportArguments),
     /// Print the JSON schema of a study file.
     Schema(SchemaArguments),
@@ -70,7 +70,7 @@ pub(crate) struct RunArguments {
     store: Option<PathBuf>,
     #[command(flatten)]
     work: WorkArguments,
-    /// Time between two checkpoints of a run.
+    /// Time after which the state of a run is saved again.
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = time_span)]
     checkpoint_every: Duration,
     /// Print the status as JSON on standard output at the end, and nothing else there.
@@ -84,11 +84,11 @@ pub(crate) struct RunArguments {
 /// How much work is done at a time, and for how long.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArguments {
-    /// Runs at a time, one processor each; unless given, as many as there are processors. Where fewer runs are left, each
-    /// takes more threads.
+    /// Runs at a time, one processor each; the default is the number of processors. When fewer runs are left, each takes
+    /// more threads.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
-    /// Stop after this time, every run saved, such as 90s, 30m, 2h.
+    /// Stop after this time, such as 90s, 30m, 2h, with every run saved.
     #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
     pub(crate) limit: Option<Duration>,
 }
@@ -121,7 +121,7 @@ pub(crate) struct SubmitArguments {
     /// Processors of a task, and runs at a time within it.
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     processors: u16,
-    /// Time of a task, such as 90m, 8h, 2d; it ends by itself two minutes earlier, every run saved.
+    /// Time of a task, such as 90m, 8h, 2d; it ends by itself two minutes earlier, with every run saved.
     #[arg(long, value_name = "TIME", default_value = "4h", value_parser = time_span)]
     time: Duration,
     /// Partition of the cluster.
@@ -193,7 +193,7 @@ pub(crate) struct ExportArguments {
     /// Folder for the tables; those in it are replaced.
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
-    /// Write J/Jmax in time of every run, too.
+    /// Also write J/Jmax against time of every run.
     #[arg(long)]
     series: bool,
 }
@@ -214,7 +214,7 @@ pub(crate) struct ImportArguments {
     /// Exported tables (.csv, .parquet), or archives (.tar).
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// Study file, where the store is still to be made.
+    /// Study file, needed where the store does not exist yet.
     #[arg(long, value_name = "FILE")]
     study: Option<PathBuf>,
 }

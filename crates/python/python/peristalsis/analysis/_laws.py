@@ -350,7 +350,7 @@ def ensembles_by_width(
     *,
     family: _Family = "gamma",
 ) -> list[WidthEnsemble]:
-    """Transition times of a table of runs, one row a run, estimated width by width in three ways.
+    """Transition times of a table of runs, one row per run, estimated width by width in three ways.
 
     Mean and variance chi_tau with errors for `fit_law` are those of each answer's `fit`.
 

@@ -210,7 +210,7 @@ class TwoPeaks:
 
 
 def fraction_crossing(width: Numbers, jammed: npt.ArrayLike) -> FractionCrossing:
-    """Width at which the fraction of jammed runs falls through one half; one row a run.
+    """Width at which the fraction of jammed runs falls through one half; one row per run.
 
     By maximum likelihood of a logistic curve in w; where the runs are separated, the bracket that they leave.
 
@@ -251,7 +251,7 @@ def hysteresis(
     jammed_width: Numbers,
     jammed_jammed: npt.ArrayLike,
 ) -> Hysteresis:
-    """Whether runs from rest and runs from jammed flow part at different widths, and by how much; one row a run.
+    """Whether runs from rest and runs from jammed flow part at different widths, and by how much; one row per run.
 
     The loop is w_c' - w_c, each the `fraction_crossing` of one start; it narrows with the time that runs are watched.
 
