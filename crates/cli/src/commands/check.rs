@@ -80,20 +80,20 @@ fn in_words(estimate: &Estimate) -> String {
             fastest = format!(", by the schedule up to {frequency} Hz");
         }
         lines.push(format!(
-            "in SI             d = {:.3e} m, m = {:.3e} kg, t = {:.3e} s; a wave of {} Hz, {:.3e} m/s{fastest}",
-            si.unit_length_m,
-            si.unit_mass_kg,
-            si.unit_time_s,
+            "in SI             d = {} m, m = {} kg, t = {} s; a wave of {} Hz, {} m/s{fastest}",
+            significant(si.unit_length_m, 4),
+            significant(si.unit_mass_kg, 4),
+            significant(si.unit_time_s, 4),
             significant(si.wave_frequency_hz, 4),
-            si.wave_speed_m_per_s
+            significant(si.wave_speed_m_per_s, 4)
         ));
         lines.push(format!(
-            "                  {} s in steps of {:.2e} s; at most {:.3e} kg/s; unit of pressure {:.3e} Pa, of power {:.3e} W",
+            "                  {} s in steps of {} s; at most {} kg/s; unit of pressure {} Pa, of power {} W",
             significant(si.duration_s, 4),
-            si.time_step_s,
-            si.largest_mass_flow_rate_kg_per_s,
-            si.unit_pressure_pa,
-            si.unit_power_w
+            significant(si.time_step_s, 3),
+            significant(si.largest_mass_flow_rate_kg_per_s, 4),
+            significant(si.unit_pressure_pa, 4),
+            significant(si.unit_power_w, 4)
         ));
         if si.gravity_m_per_s2 != [0.0; 3] {
             let [x, y, z] = si.gravity_m_per_s2.map(|it| significant(it, 4));
@@ -101,8 +101,9 @@ fn in_words(estimate: &Estimate) -> String {
         }
         if si.body_force_m_per_s2 != 0.0 {
             lines.push(format!(
-                "                  body force {:.3e} m/s^2, a pressure rise of {:.3e} Pa a wavelength",
-                si.body_force_m_per_s2, si.pressure_rise_pa
+                "                  body force {} m/s^2, a pressure rise of {} Pa over a wavelength",
+                significant(si.body_force_m_per_s2, 4),
+                significant(si.pressure_rise_pa, 4)
             ));
         }
     }

@@ -36,8 +36,8 @@ pub(super) fn warnings(run: &Run) -> Vec<Warning> {
 fn packed_too_densely(configuration: &Configuration, packed: f64, limit: f64) -> Warning {
     let message = format!(
         "the grains already overlap by up to {:.0} % of a diameter where they are packed, at a volume fraction of {:.3} of the \
-         tube between the centres of its wall; solid grains have no room there, and soft spheres pass for them up to {:.0} \
-         %: take fewer grains or a wider tube",
+         tube between the centres of its wall; solid grains have no room there, and beyond {:.0} \
+         % soft spheres no longer pass for solid ones: take fewer grains or a wider tube",
         100.0 * packed,
         configuration.volume_fraction(),
         100.0 * limit
@@ -58,8 +58,8 @@ fn overlapped(configuration: &Configuration, overlap: f64, limit: f64) -> Warnin
         }
     };
     let message = format!(
-        "grains overlapped by up to {:.0} % of a diameter, with one another or with the wall; up to {:.0} % soft spheres \
-         pass for solid grains: take {harder}, fewer grains, a wider tube or a weaker drive",
+        "grains overlapped by up to {:.0} % of a diameter, with each other or with the wall; beyond {:.0} % soft spheres \
+         no longer pass for solid grains: take {harder}, fewer grains, a wider tube or a weaker drive",
         100.0 * overlap,
         100.0 * limit
     );

@@ -59,7 +59,9 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     if let Some(pumping) = &summary.pumping {
         let (rise, power) = (pumping.pressure_rise, pumping.useful_power.0);
         flow.push_str(&format!(
-            "\nagainst a pressure rise of {rise:.3e} m/(d t^2) a wavelength: useful power {power:.3e}, {}",
+            "\nagainst a pressure rise of {} m/(d t^2) over a wavelength: useful power {} m d^2/t^3, {}",
+            significant(rise, 4),
+            significant(power, 4),
             efficiency(pumping)
         ));
     }
@@ -83,7 +85,7 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             && let (Some(high), Some(largest)) = (force(high), force(largest))
         {
             flow.push_str(&format!(
-                "\n       99 % of the contacts below {high} N, the largest {largest} N"
+                "\n       99 % of the contacts bear less than {high} N, the largest bears {largest} N"
             ));
         }
     }
