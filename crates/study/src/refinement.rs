@@ -37,6 +37,8 @@ pub struct Bracket {
     pub lower: f64,
     /// The upper value.
     pub upper: f64,
+    /// Whether most runs have a transition at the lower value, and most have none at the upper; or the other way round.
+    pub has_transitions_below: bool,
 }
 
 impl Bracket {
@@ -153,16 +155,19 @@ impl Line<'_> {
             return vec![(lower, upper)];
         };
         let pairs = known[below..=above].windows(2);
-        pairs.map(|pair| (pair[0].0, pair[1].0)).collect()
+        pairs
+            .map(|pair| (pair[0].0, pair[1].0, pair[0].1.majority() == Some(true)))
+            .collect()
     }
 
-    /// The last two neighbouring values between which the majority changes, points that say nothing yet left out.
-    fn bracket(&self, counts: &HashMap<usize, Count>) -> Option<(f64, f64)> {
+    /// The last two neighbouring values between which the majority changes, points that say nothing yet left out; and
+    /// whether most runs have a transition at the lower one.
+    fn bracket(&self, counts: &HashMap<usize, Count>) -> Option<(f64, f64, bool)> {
         self.known(counts)
             .windows(2)
             .rev()
             .find(|pair| pair[0].1.majority() != pair[1].1.majority())
-            .map(|pair| (pair[0].0, pair[1].0))
+            .map(|pair| (pair[0].0, pair[1].0, pair[0].1.majority() == Some(true)))
     }
 }
 
@@ -179,7 +184,7 @@ pub fn brackets(
     let setting = setting_of(study, axis);
     let counts = counts(plan, found);
     let of_line = |line: Line<'_>| {
-        let (lower, upper) = line.bracket(&counts)?;
+        let (lower, upper, has_transitions_below) = line.bracket(&counts)?;
         let point = line.0[0].2;
         Some(Bracket {
             key: point.settings[setting].key.clone(),
@@ -187,6 +192,7 @@ pub fn brackets(
             state: point.state,
             lower,
             upper,
+            has_transitions_below,
         })
     };
     let lines = lines(study, plan, axis).into_iter();

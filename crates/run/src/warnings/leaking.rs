@@ -40,8 +40,8 @@ pub(super) fn warning(
     });
     let part = parts.into_iter().fold(0.0, f64::max);
     let message = format!(
-        "a grain as fast as the wave has {part:.2} of the energy that it needs to pass between the wall's spheres where \
-         the tube is widest: from about {LEAKING_ENERGY} on grains escape (`escaped` counts them); take more spheres \
+        "a grain as fast as the wave has {part:.2} times the energy to pass between the wall's spheres where the tube is \
+         widest: from about {LEAKING_ENERGY} times on grains escape (`escaped` counts them); take more spheres \
          per ring and more rings per wave, or a lower drive.strain_rate"
     );
     (part > LEAKING_ENERGY).then_some(Warning { key, message })

@@ -91,6 +91,9 @@ fn bisection_ends_within_the_tolerance_of_each_line() {
             "{bracket:?}"
         );
         assert!(bracket.upper - bracket.lower <= 0.01, "{bracket:?}");
+        // Grains at rest jam in narrow tubes, and jams give way in wide ones.
+        let is_rest = bracket.state == InitialState::Rest;
+        assert_eq!(bracket.has_transitions_below, is_rest, "{bracket:?}");
     }
     // 0.2 is halved five times to be at most 0.01, in each of four lines, by three replicates.
     assert_eq!(plan.runs().len(), 3 * 4 * (3 + 5));

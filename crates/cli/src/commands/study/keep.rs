@@ -50,7 +50,7 @@ pub(crate) fn scan(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
 
 fn in_words(found: &Verification) -> String {
     let mut text = format!(
-        "{} whose hashes check, {} imported, {} with a checkpoint, {} failed\n",
+        "{} whose files agree with their hashes, {} imported, {} with a saved state, {} failed\n",
         counted(found.whole, "finished run"),
         found.imported,
         found.checkpointed,

@@ -63,7 +63,7 @@ fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) ->
         lines.push(format!("finished          {finished}"));
     }
     lines.push(format!(
-        "steps             {:.3e} ({:.3e} of a grain)",
+        "steps             {:.3e} ({:.3e} grain-steps)",
         estimate.steps as f64, estimate.grain_steps
     ));
     let processors = processors();

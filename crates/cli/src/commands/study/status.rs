@@ -127,10 +127,15 @@ pub(super) fn estimate(bracket: &Bracket) -> String {
         of,
         lower,
         upper,
+        has_transitions_below,
         ..
     } = bracket;
+    let (at_lower, at_upper) = match has_transitions_below {
+        true => ("a", "no"),
+        false => ("no", "a"),
+    };
     format!(
-        "{of}: most runs cross observe.transition_threshold on one side of {key} = {lower} to {upper} only"
+        "{of}: most runs have {at_lower} transition at {key} = {lower}, and {at_upper} transition at {upper}"
     )
 }
 
@@ -163,9 +168,9 @@ pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
     let meaning = match state {
         State::Pending => "nothing has been computed yet".to_owned(),
         State::Leased => survey.leases.get(&identity).cloned().unwrap_or_default(),
-        State::Checkpointed => "interrupted; it goes on from its last checkpoint".to_owned(),
+        State::Checkpointed => "interrupted; it goes on from its last saved state".to_owned(),
         State::Done => reason.unwrap_or_else(|| {
-            "finished; its hashes checked when it was last looked at".to_owned()
+            "finished; its files agreed with their hashes when they were last checked".to_owned()
         }),
         State::Failed => reason.unwrap_or_default(),
         State::Quarantined => format!("{}; it will be computed again", reason.unwrap_or_default()),

@@ -59,7 +59,7 @@ fn kill_until_done(place: &Place, numbers: &mut Numbers, longest: u64) -> u32 {
 /// Asserts that a store holds each run of its study once, whole, and that nothing had to be thrown away.
 fn assert_whole(place: &Place, runs: usize) {
     let verified = format!(
-        "{runs} finished runs whose hashes check, 0 imported, 0 with a checkpoint, 0 failed"
+        "{runs} finished runs whose files agree with their hashes, 0 imported, 0 with a saved state, 0 failed"
     );
     place.does("study verify store").shows(&[&verified]);
     assert!(!place.path("store/quarantine").exists());
