@@ -142,7 +142,7 @@ impl Line<'_> {
     /// reverse, around the last change of the majority; that change alone where runs differ all the way to an end of the
     /// line.
     fn undecided(&self, counts: &HashMap<usize, Count>) -> Vec<(f64, f64)> {
-        let Some((lower, upper)) = self.bracket(counts) else {
+        let Some((lower, upper, _)) = self.bracket(counts) else {
             return Vec::new();
         };
         let known = self.known(counts);
@@ -155,9 +155,7 @@ impl Line<'_> {
             return vec![(lower, upper)];
         };
         let pairs = known[below..=above].windows(2);
-        pairs
-            .map(|pair| (pair[0].0, pair[1].0, pair[0].1.majority() == Some(true)))
-            .collect()
+        pairs.map(|pair| (pair[0].0, pair[1].0)).collect()
     }
 
     /// The last two neighbouring values between which the majority changes, points that say nothing yet left out; and
