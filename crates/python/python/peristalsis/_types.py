@@ -39,17 +39,16 @@ class Keywords(TypedDict, total=False):
     axial: float
     """wall.keep.axial. Stiffness of the axial tether of a wall sphere to its place. (Unit: m t^-2.)"""
     axial_velocity: float
-    """initial.axial_velocity. Velocity of every grain along the wave at t = 0. Missing: 0 from rest, the wave's
-    speed when jammed. (Unit: d t^-1.)"""
+    """initial.axial_velocity. Velocity of every grain along the wave at t = 0. Default: 0 from rest, the wave's
+    speed from jammed. (Unit: d t^-1.)"""
     azimuthal: float
     """wall.keep.azimuthal. Stiffness of the azimuthal tether of a wall sphere to its place. (Unit: m t^-2.)"""
     balance: bool
     """wall.keep.balance. Whether a constant force on each wall sphere balances the springs in the straight tube."""
     body_force: float
-    """drive.body_force. Body force on the grains g, force over mass along the wave: negative is back pressure,
-    against which the wave has to pump. It is gravity along the wave, to which body.gravity adds. The pressure rise
-    over a wavelength that both stand for is N m (-g) lambda/(L pi a^2), g their part along the wave. (Unit: d
-    t^-2.)"""
+    """drive.body_force. Body force g on the grains, force over mass along the wave. Negative is back pressure,
+    against which the wave has to pump. body.gravity adds to it. Both together stand for a pressure rise over a
+    wavelength of N m (-g) lambda/(L pi a^2). (Unit: d t^-2.)"""
     body_gravity: Sequence[float]
     contact_dissipation_form: Literal["printed", "viscoelastic"]
     contact_dissipation_time: float
@@ -74,8 +73,7 @@ class Keywords(TypedDict, total=False):
     """drive.control. What of the wall is prescribed: its radius (strain) or the radial force on its spheres
     (stress)."""
     density: float
-    """units.density. Density of the grains' material; the unit of mass is the mass of a sphere of diameter d, m =
-    pi density d^3/6. (Unit: kg m^-3.)"""
+    """units.density. Density of the grains' material. The unit of mass is m = pi density d^3/6. (Unit: kg m^-3.)"""
     diameter_max: float
     """grains.diameter_max. Largest grain diameter, not below diameter_min. (Unit: d.)"""
     diameter_min: float
@@ -126,23 +124,23 @@ class Keywords(TypedDict, total=False):
     """drive.fall. Part of the period in which a segment opens; waveform = "segments". (Unit: periods.)"""
     file: str
     """tube.file. Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the
-    columns angle (rad) and place (d), one sphere per line. Its path is that from the configuration file, or from
-    where the program runs."""
+    columns angle (rad) and place (d), one sphere per line. Its path is relative to the configuration file, with
+    --set to where the program runs."""
     force_amplitude: float
     """drive.force_amplitude. Amplitude f^P of the radial force on each wall sphere; stress control. (Unit: m d
     t^-2.)"""
     grain_diameter: float
-    """units.grain_diameter. Diameter of a grain whose diameter is 1 here: the unit of length d. (Unit: m.)"""
+    """units.grain_diameter. The unit of length d: diameter of a grain whose diameter is 1 in the other tables.
+    (Unit: m.)"""
     grains_diameter_max: float
     grains_diameter_min: float
     grains_number: int
     grains_number_density: float
     grains_volume_fraction: float
     gravity: Sequence[float]
-    """body.gravity. Gravity [x, y, z]: the acceleration of every grain by its weight. z is the tube's axis,
-    whichever way the wave runs, x and y lie across it: [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an
-    upright one. The wall has no weight of its own. drive.body_force adds to it; units.acceleration gives it in SI.
-    (Unit: d t^-2.)"""
+    """body.gravity. Gravity [x, y, z] on the grains. z is the tube's axis, whichever way the wave runs; x and y lie
+    across it: [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an upright one. The wall has no weight.
+    drive.body_force adds to it; units.acceleration gives it in SI. (Unit: d t^-2.)"""
     initial_axial_velocity: float
     initial_state: Literal["rest", "settled", "jammed", "placed"]
     integrator: Literal["verlet", "adams_bashforth"]
@@ -153,16 +151,16 @@ class Keywords(TypedDict, total=False):
     """contact.kinetic_friction. Kinetic friction mu_k, not above static_friction. If only static_friction is given,
     equal to it. (A pure number.)"""
     late_fraction: float
-    """observe.late_fraction. Part of the run, at its end, that late means and profiles are taken over. (A pure
+    """observe.late_fraction. Part of the run, at its end, over which late means and profiles are taken. (A pure
     number.)"""
     law: Literal["linear", "hertz"]
     """contact.law. Normal contact law. It takes the keys that name it; friction goes with every law."""
     natural_length: float
-    """wall.natural_length. Natural length l of these springs; stress control. Missing: 0.7 of the mean distance of
+    """wall.natural_length. Natural length l of these springs; stress control. Default: 0.7 of the mean distance of
     lattice neighbours. An unstretched network buckles: keep it below the distance of neighbours. (Unit: d.)"""
     neighbour_skin: float
-    """run.neighbour_skin. Distance by which the neighbour search looks farther than contacts reach: it sets the
-    speed, and the order of sums. Missing: 0.3 of the largest grain diameter. (Unit: d.)"""
+    """run.neighbour_skin. How much farther the neighbour search looks than contacts reach. It changes speed and
+    rounding, not the physics. Default: 0.3 of the largest grain diameter. (Unit: d.)"""
     net_force: Literal["free", "removed", "removed_per_ring"]
     """wall.keep.net_force. What is done with the mean force on the wall at each step."""
     normal_damping: float
@@ -180,42 +178,43 @@ class Keywords(TypedDict, total=False):
     observe_transition_threshold: float
     order: Sequence[int]
     """drive.order. The segments in the order in which they close, counted from 1 along the wave, each once;
-    waveform = "segments". Missing: one after the other along the wave. (A pure number.)"""
+    waveform = "segments". Default: one after the other along the wave. (A pure number.)"""
     periods: float
-    """run.periods. Length of the run in wave periods, rounded up to whole samples. They are those of
-    drive.strain_rate: where a schedule changes the rate, the wave runs more or fewer wavelengths (column period).
-    (Unit: periods.)"""
+    """run.periods. Length of the run in periods of drive.strain_rate, rounded up to whole samples. Where a schedule
+    changes the strain rate, the wave runs more or fewer wavelengths (column period). (Unit: periods.)"""
     phases: Sequence[float]
     """drive.phases. Phases of the points of waveform = "table" in cycles, ascending from 0 on; 3 to 128 of them. (A
     pure number.)"""
     places: Sequence[float]
-    """tube.places. Place of each of them along the tube, 0 <= z < L. (Unit: d.)"""
+    """tube.places. Place z of each wall sphere along the tube, from 0 to below L; under arrangement = "file".
+    (Unit: d.)"""
     poisson_ratio: float
     """contact.poisson_ratio. Poisson's ratio nu of the Hertz law. (A pure number.)"""
     profile_bins: int
-    """observe.profile_bins. Bins of the profiles over one wavelength. The largest pressure on the wall is that of
-    one of them. (A pure number.)"""
+    """observe.profile_bins. Bins of the profiles over one wavelength. The largest pressure on the wall is that of a
+    bin: it grows with their number. (A pure number.)"""
     radial: float
     """wall.keep.radial. Stiffness of the radial tether of a wall sphere to its place. (Unit: m t^-2.)"""
     radii: Sequence[float]
-    """drive.radii. Radius at each of them. Their shape alone counts: the largest becomes tube.radius, the least
-    half of drive.width. (A pure number.)"""
+    """drive.radii. Radius at each phase. Only the shape counts: the largest becomes tube.radius, the least half of
+    drive.width. (A pure number.)"""
     radius: float
-    """tube.radius. Mean radius a, to the centres of the wall spheres. (Unit: d.)"""
+    """tube.radius. Mean radius a of the tube, to the centres of the wall spheres. (Unit: d.)"""
     ramp_periods: float
     """drive.ramp_periods. Length of the ramp of schedule = "ramp", in wave periods. (Unit: periods.)"""
     restitution: float
-    """contact.restitution. Restitution e of two grains of the mean diameter that meet head-on at restitution_speed,
-    instead of normal_damping (linear law) or dissipation_time (Hertz law), which are resolved from it. Linear law:
-    e = exp(-pi beta/sqrt(k/m_ij - beta^2)), beta = eta/(2 m_ij), at any speed. Hertz law: by integration of the
-    impact; e falls with the speed. (A pure number.)"""
+    """contact.restitution. Restitution e of two grains of the mean diameter that meet head-on. Give it instead of
+    normal_damping (linear law) or dissipation_time (Hertz law), which then follow. Linear law: e = exp(-pi
+    beta/sqrt(k/m_ij - beta^2)), beta = eta/(2 m_ij), at any speed. Hertz law: by integration of an impact at
+    restitution_speed; e falls with the speed. (A pure number.)"""
     restitution_speed: float
-    """contact.restitution_speed. Relative speed at which restitution holds. Missing: the speed of the wave, so that
-    in a study of several strain rates each has its own material; a static wave needs it. (Unit: d t^-1.)"""
+    """contact.restitution_speed. Relative speed at which restitution holds under the Hertz law. Default: the speed
+    of the wave. Give it in a study of several strain rates, or each has its own material. A static wave needs it.
+    (Unit: d t^-1.)"""
     rings_per_wave: int
-    """tube.rings_per_wave. Rings in a wavelength: even under strain control, where they are staggered; under stress
-    control an odd number needs an even number of waves. Random and disordered walls have as many spheres as these
-    rings; those of a file stand without them. (A pure number.)"""
+    """tube.rings_per_wave. Rings in a wavelength. Staggered rings under strain control need an even number; under
+    stress control an odd number needs an even number of waves. Random and disordered walls have as many spheres as
+    so many rings would have; a wall from a file does not use it. (A pure number.)"""
     rise: float
     """drive.rise. Part of the period in which a segment closes; waveform = "segments". (Unit: periods.)"""
     run_duration: float
@@ -226,15 +225,14 @@ class Keywords(TypedDict, total=False):
     run_seed: int
     run_time_step: float
     samples_per_period: int
-    """observe.samples_per_period. Samples of the time series in one wave period; a static run has 200 samples in
-    all. In a run of more than 262,144 samples every two neighbours become one, again and again: memory is bounded.
-    (A pure number.)"""
+    """observe.samples_per_period. Samples of the time series in one period of the wave; with a static wave, 200 in
+    the whole run. Beyond 262,144 samples every two neighbours become one, so that memory is bounded. (A pure
+    number.)"""
     schedule: Literal["sudden", "ramp"] | Mapping[str, Any] | Sequence[Mapping[str, Any]]
-    """drive.schedule. How the drive's parameters follow time: "sudden" (constant from t = 0), "ramp" (the amplitude
-    grows from nothing within ramp_periods), a table such as { form = "ramp", parameter = "width", from = 3.0, to =
-    2.6, end = 100 } or { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }, in which
-    "course" instead of "steps" goes from value to value in straight lines, or a list of such tables, not an empty
-    one."""
+    """drive.schedule. How parameters of the drive follow time. "sudden": constant from t = 0. "ramp": the amplitude
+    grows from nothing within ramp_periods. Or a table such as { form = "ramp", parameter = "width", from = 3.0, to
+    = 2.6, end = 100 } or { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }; with form =
+    "course" straight lines lead from value to value. Or a list of such tables, one for each parameter."""
     seed: int
     """run.seed. Seed of the random numbers that place the grains. (A pure number.)"""
     segments: int
@@ -254,21 +252,22 @@ class Keywords(TypedDict, total=False):
     """wall.spring_stiffness. Stiffness k_w of the spring between lattice neighbours; stress control. (Unit: m
     t^-2.)"""
     state: Literal["rest", "settled", "jammed", "placed"]
-    """initial.state. How the grains stand at t = 0: spread over the tube at rest, settled under gravity, gathered
-    in the bellies and moving with the wave, or placed by a program, which no file repeats."""
+    """initial.state. How the grains stand at t = 0: spread over the tube at rest, settled under gravity, or
+    gathered in the bellies and moving with the wave. Only a program can place them otherwise."""
     static_friction: float
     """contact.static_friction. Static friction mu_s: a contact sticks while |f_t| < mu_s f_n. If only
     kinetic_friction is given, equal to it; with both 0 grains are frictionless and do not rotate. (A pure
     number.)"""
     stiffness: float
-    """units.stiffness. Stiffness of a contact, what contact.normal_stiffness stands for: it fixes the unit of time,
+    """units.stiffness. Stiffness of a contact in SI. With contact.normal_stiffness it fixes the unit of time,
     sqrt(m/k) for k = 1. (Unit: N m^-1.)"""
     strain_rate: float
     """drive.strain_rate. Strain rate c/lambda, one over the wave's period; 0 is a static wave and needs
     run.duration. (Unit: t^-1.)"""
     table: str
     """drive.table. Table of waveform = "table" instead of phases and radii: CSV with the columns phase (cycles) and
-    radius, one point per line. Its path is that from the configuration file, or from where the program runs."""
+    radius, one point per line. Its path is relative to the configuration file, with --set to where the program
+    runs."""
     tangential_damping: float
     """contact.tangential_damping. Tangential damping eta_t. Without effect while both frictions are 0. (Unit: m
     t^-1.)"""
@@ -276,11 +275,12 @@ class Keywords(TypedDict, total=False):
     """contact.tangential_stiffness. Tangential stiffness k_t, f_t = -k_t u - eta_t v_t below the Coulomb limit.
     Without effect while both frictions are 0. (Unit: m t^-2.)"""
     time_step: float
-    """run.time_step. Longest time step allowed; the step taken divides the time between two samples. (Unit: t.)"""
+    """run.time_step. Largest time step allowed. The step is chosen so that a whole number of steps lies between two
+    samples. (Unit: t.)"""
     transition_threshold: float
-    """observe.transition_threshold. J/Jmax that the period average crosses at a transition, on its way from the
-    initial state, 0 from rest and 1 jammed: from rest upward, or downward to back flow where the threshold is below
-    0; from jammed downward, or upward where it is above 1. (A pure number.)"""
+    """observe.transition_threshold. J/Jmax that the average over a period crosses at a transition. From rest
+    (J/Jmax = 0) it is crossed upward, or downward if it is below 0; from jammed (J/Jmax = 1) downward, or upward if
+    it is above 1. (A pure number.)"""
     tube_angles: Sequence[float]
     tube_arrangement: Literal["staggered", "aligned", "random", "disordered", "file"]
     tube_arrangement_seed: int
@@ -297,8 +297,8 @@ class Keywords(TypedDict, total=False):
     units_stiffness: float
     units_wave_frequency: float
     units_young_modulus: float
-    """units.young_modulus. Young's modulus, what contact.young_modulus stands for: it fixes the unit of time,
-    sqrt(m/(Y d)) for Y = 1. (Unit: Pa.)"""
+    """units.young_modulus. Young's modulus in SI. With contact.young_modulus it fixes the unit of time, sqrt(m/(Y
+    d)) for Y = 1. (Unit: Pa.)"""
     volume_fraction: float
     """grains.volume_fraction. Volume fraction rho = N d^3/(6 a^2 L) of grains in a straight tube of radius a and
     length L, d^3 averaged over the diameters; N is rounded to the nearest whole number. (A pure number.)"""
@@ -315,8 +315,8 @@ class Keywords(TypedDict, total=False):
     wall_spring_damping: float
     wall_spring_stiffness: float
     wave_frequency: float
-    """units.wave_frequency. Frequency of the wave, c/lambda in SI; instead of drive.strain_rate and
-    drive.wave_speed, with which the wave in SI follows stiffness or young_modulus. (Unit: Hz.)"""
+    """units.wave_frequency. Frequency of the wave, c/lambda. Give it instead of drive.strain_rate or
+    drive.wave_speed: with those the wave in SI gets faster when stiffness or young_modulus grows. (Unit: Hz.)"""
     wave_speed: float
     """drive.wave_speed. Speed c of the wave; 0 is a static wave and needs run.duration. (Unit: d t^-1.)"""
     waveform: Literal["sine", "bolus", "roller", "table", "segments"]
