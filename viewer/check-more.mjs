@@ -5,9 +5,10 @@ import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { gzipSync } from "node:zlib";
 import { audit, everyLook } from "./audit.mjs";
+import { serveFiles, WEB } from "./check-web.mjs";
 import { widgetChecks } from "./check-widget.mjs";
 
-export function moreChecks({ serve, open, measured, until, shoot, pictures, serveFiles, pixels, desk, phone, WEB, program, runs }) {
+export function moreChecks({ serve, open, measured, until, shoot, pictures, pixels, desk, phone, program, runs }) {
   const fastest = async (page) => {
     await page.selectOption("#speed", "");
     await page.click("#play");
@@ -233,12 +234,11 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, serv
     });
     await page.goto(address);
     // It plays by itself, for who has not asked for stillness, and the tube is drawn flat.
-    await until(page, () => window.viewer?.measured.clock > 0.3);
+    await until(page, () => window.viewer?.measured.clock > 4);
     assert(await page.isVisible("#flat"));
     const first = await pixels(page);
     assert(first.edges > 0.005 && first.coloured > 0.01, `of the flat stage ${first.edges} are edges, ${first.coloured} coloured`);
-    await until(page, () => window.viewer?.measured.clock > 1);
-    await page.waitForTimeout(300);
+    await until(page, () => window.viewer?.measured.clock > 5);
     assert.notEqual((await pixels(page)).sum, first.sum);
     await shoot(page, "no-webgl");
     await audit(page, "a run without WebGL");
@@ -258,11 +258,19 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, serv
     const names = await page.locator("#study option").allTextContents();
     const choose = async (begin) => {
       const at = names.findIndex((name) => name.startsWith(`${begin} (`));
-      const drawn = await page.evaluate(() => window.study.measured.drawn);
       await page.selectOption("#study", String(at));
-      await until(page, (drawn) => window.study.measured.drawn > drawn && window.study.measured.places.length > 0, drawn);
+      const isShown = (name) => document.getElementById("facts").textContent.startsWith(`${name} ·`) && window.study.measured.places.length > 0;
+      await until(page, isShown, begin);
       return page.evaluate(() => ({ ...window.study.measured, other: document.getElementById("other").value, value: document.getElementById("value").value }));
     };
+    // Charts change with the theme as if the page had begun in it.
+    const drawn = () => page.evaluate(() => document.querySelector("#charts canvas").toDataURL());
+    await page.emulateMedia({ colorScheme: "dark" });
+    const changed = await drawn();
+    await page.reload();
+    await until(page, () => window.study?.measured.places.length > 0);
+    assert.equal(changed, await drawn());
+    await page.emulateMedia({ colorScheme: "light" });
     // What is right for one study is not taken to the next.
     await choose("elastic-yielding");
     const radius = await choose("radius");

@@ -1,4 +1,4 @@
-import { forgetInk, ink } from "./charts";
+import { ink } from "./charts";
 import { type Connection, Engine, type Listener, Server, type Wanted } from "./connection";
 import { FIELDS } from "./fields";
 import { showField } from "./field-legend";
@@ -370,7 +370,6 @@ class Page {
   }
 
   private redraw(): void {
-    forgetInk();
     this.looked();
     this.shownFrame = null;
     this.chartsStale = true;

@@ -1,4 +1,5 @@
 /** What the pages have in common. */
+import { forgetInk } from "./charts";
 
 export function element<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
@@ -21,11 +22,13 @@ export function fill(list: HTMLElement, facts: [string, string][]): void {
 /** Follows the choice of light or dark, of the page and of the system. */
 export function listenToLook(redraw: () => void): void {
   const look = element<HTMLSelectElement>("look");
-  look.onchange = () => {
+  const change = () => {
     document.documentElement.dataset.look = look.value;
+    forgetInk();
     redraw();
   };
-  matchMedia("(prefers-color-scheme: dark)").onchange = redraw;
+  look.onchange = change;
+  matchMedia("(prefers-color-scheme: dark)").onchange = change;
 }
 
 export function isDark(): boolean {

@@ -171,7 +171,7 @@ class StudyPage {
     document.title = `${title} – peristalsis`;
     element("title").textContent = title;
     if (choice.view === "figures") {
-      element("facts").textContent = `${list.figures.length} figures of the claims, with the studies behind them`;
+      element("facts").textContent = `${list.figures.length} ${list.figures.length === 1 ? "figure" : "figures"} of the claims, with the studies behind them`;
       return;
     }
     if (!results) return;
