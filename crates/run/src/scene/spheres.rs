@@ -15,6 +15,8 @@ const STONE: [u8; 3] = [207, 202, 193];
 const SHRUNK: f64 = 0.32;
 /// Part of the contacts whose force lies within the colours.
 const COVERED: f64 = 0.97;
+/// From one sphere of a rod to the next: a part of its radius, which nobody sees, but not less than so much \[d\].
+const SPACING: (f64, f64) = (0.1, 0.008);
 /// Normal forces from weak to strong, as in the viewer.
 const FORCES: [[f64; 3]; 5] = [
     [70.0, 60.0, 110.0],
@@ -66,7 +68,7 @@ impl PictureScene {
             };
             let part = (contact.normal_force / largest).min(1.0);
             let radius = 0.02 + 0.11 * part;
-            let pieces = (way.length() / (0.4 * radius)).ceil();
+            let pieces = (way.length() / (SPACING.0 * radius).max(SPACING.1)).ceil();
             rods.extend((0..=pieces as u32).map(|piece| Sphere {
                 centre: begin + f64::from(piece) / pieces * way,
                 radius,
