@@ -57,7 +57,7 @@ export function widgetChecks({ serve, until, shoot, desk }) {
     const inside = page.frames()[1];
     await inside.waitForFunction(() => window.viewer?.measured.pictures > 0);
     // The run is the notebook's: it does not begin by itself, and what a simulation of Python cannot do is not offered.
-    assert(await page.evaluate(() => window.said.includes("next")), "no frame is asked for after the first");
+    await until(page, () => window.said.includes("next"));
     assert(!(await page.evaluate(() => window.said.some((it) => it.playing))), "it plays without being asked to");
     for (const button of ["#save", "#again", "#share"]) assert(!(await inside.isVisible(button)), `${button} is shown`);
     // What the simulation does is seen.
