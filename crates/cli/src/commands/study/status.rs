@@ -130,13 +130,11 @@ pub(super) fn estimate(bracket: &Bracket) -> String {
         has_transitions_below,
         ..
     } = bracket;
-    let (at_lower, at_upper) = match has_transitions_below {
-        true => ("a", "no"),
-        false => ("no", "a"),
+    let (with, without) = match has_transitions_below {
+        true => (lower, upper),
+        false => (upper, lower),
     };
-    format!(
-        "{of}: most runs have {at_lower} transition at {key} = {lower}, and {at_upper} transition at {upper}"
-    )
+    format!("{of}: with {key} = {with} most runs have a transition, with {without} most have none")
 }
 
 pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
