@@ -46,12 +46,12 @@ pub struct CurveFit {
     pub linearity: f64,
 }
 
-/// A straight line through points whose scatter about it is the only error known.
+/// A straight line through points that scatter about it by more than their errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScatteredLine {
-    /// The line; its errors are those of the scatter, the intervals of intercept and slope Student's.
+    /// The line; its errors are those of points and scatter, the intervals of intercept and slope Student's.
     pub line: LineFit,
-    /// R^2, the part of the variance of y that the line explains.
+    /// R^2, the part of the weighted variance of y that the line explains.
     pub determination: f64,
     /// Probability of a quadratic term at least as large if the points scatter about a line: F-test of line against
     /// parabola; `None` with three places, through which every parabola goes.
@@ -170,33 +170,35 @@ pub fn fit_parabola(x: &[f64], y: &[f64], error: &[f64]) -> Result<CurveFit, Err
     })
 }
 
-/// Straight line through points of unknown errors, all alike, as one draws it by least squares.
+/// Straight line through points that scatter by more than their errors `error` (0 where nothing is known of them).
 ///
-/// The variance of the points is `chi^2/(n - 2)` about the line, so that intercept and slope follow Student's distribution
-/// of n - 2 degrees of freedom; whether the points bend is asked in the same way, by the F-test of the quadratic term with
-/// n - 3. Source: Bevington & Robinson, Data Reduction and Error Analysis (2003), chapters 6 and 11.
+/// Each point gets the error `(error_i^2 + s^2)^(1/2)`, with the scatter s at which `chi^2` about the line is n - 2, or 0 where
+/// the errors suffice. With errors of 0 all points weigh alike, as one draws a line through them. Intercept and slope follow
+/// Student's distribution of n - 2 degrees of freedom; whether the points bend is asked by the F-test of the quadratic term
+/// with n - 3, in the same weights. Source: Paule & Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982); Bevington & Robinson,
+/// Data Reduction and Error Analysis (2003), chapters 6 and 11.
 ///
 /// # Errors
-/// [`Error::TooFewPlaces`] below 3 distinct x, else as for [`fit_line`].
+/// [`Error::TooFewPlaces`] below 3 distinct x, [`Error::NotPositive`] for an error below 0, else as for [`fit_line`].
 ///
 /// ```
 /// use peristalsis_analysis::fit_line_to_scatter;
-/// let fit = fit_line_to_scatter(&[0.0, 1.0, 2.0], &[1.0, 2.0, 6.0])?;
+/// let fit = fit_line_to_scatter(&[0.0, 1.0, 2.0], &[1.0, 2.0, 6.0], &[0.0; 3])?;
 /// // chi^2 = 3/2 with one degree of freedom: the slope's variance is 3/4, Student's 95 per cent are 12.7 errors.
 /// assert!((fit.line.slope.error - 0.75_f64.sqrt()).abs() < 1e-12);
 /// assert!((fit.line.slope.interval_95.length() / fit.line.slope.error - 2.0 * 12.706).abs() < 1e-3);
 /// assert!((fit.determination - (1.0 - 1.5 / 14.0)).abs() < 1e-12 && fit.linearity.is_none());
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
-pub fn fit_line_to_scatter(x: &[f64], y: &[f64]) -> Result<ScatteredLine, Error> {
-    let alike = vec![1.0; x.len()];
-    check_points(x, y, &alike)?;
+pub fn fit_line_to_scatter(x: &[f64], y: &[f64], error: &[f64]) -> Result<ScatteredLine, Error> {
+    check_points(x, y, &vec![1.0; x.len()])?;
+    // Errors of 0 are none.
+    let positive = |error: &f64| if *error == 0.0 { 1.0 } else { *error };
+    check_points(x, y, &error.iter().map(positive).collect::<Vec<_>>())?;
     enough_places(distinct(x).len(), 3)?;
-    let through = fit_line(x, y, &alike)?;
-    let freedom = through.degrees_of_freedom;
-    // Points on a line have no scatter, but errors must be positive.
-    let scatter = (through.chi_squared / freedom as f64).sqrt().max(1e-100);
-    let mut line = fit_line(x, y, &vec![scatter; x.len()])?;
+    let total = scattered_errors(x, y, error)?;
+    let mut line = fit_line(x, y, &total)?;
+    let freedom = line.degrees_of_freedom;
     let student = |one: Uncertain| {
         let within = |tail| {
             let reach = one.error * quantile(tail, freedom);
@@ -209,11 +211,13 @@ pub fn fit_line_to_scatter(x: &[f64], y: &[f64]) -> Result<ScatteredLine, Error>
         }
     };
     (line.intercept, line.slope) = (student(line.intercept), student(line.slope));
-    let mean = y.iter().sum::<f64>() / y.len() as f64;
-    let all: f64 = y.iter().map(|y| (y - mean) * (y - mean)).sum();
+    let weight: Vec<f64> = total.iter().map(|error| 1.0 / (error * error)).collect();
+    let mean = centre(y, &weight);
+    let squares = y.iter().zip(&weight);
+    let all: f64 = squares.map(|(y, weight)| weight * (y - mean).powi(2)).sum();
     let linearity = (distinct(x).len() > 3).then(|| {
-        let bent = fit_parabola(x, y, &alike)?;
-        let gain = (through.chi_squared - bent.chi_squared).max(0.0);
+        let bent = fit_parabola(x, y, &total)?;
+        let gain = (line.chi_squared - bent.chi_squared).max(0.0);
         let variance = bent.chi_squared.max(1e-200) / bent.degrees_of_freedom as f64;
         let score = (gain / variance).sqrt();
         Ok(student_tail(score, bent.degrees_of_freedom))
@@ -221,12 +225,35 @@ pub fn fit_line_to_scatter(x: &[f64], y: &[f64]) -> Result<ScatteredLine, Error>
     Ok(ScatteredLine {
         line,
         determination: if all > 0.0 {
-            1.0 - through.chi_squared / all
+            1.0 - line.chi_squared / all
         } else {
             0.0
         },
         linearity: linearity.transpose()?,
     })
+}
+
+/// The errors with the least scatter of their own that makes chi^2 about the line n - 2 at most.
+fn scattered_errors(x: &[f64], y: &[f64], error: &[f64]) -> Result<Vec<f64>, Error> {
+    let with = |scatter: f64| -> Vec<f64> {
+        // Points on a line have no scatter, but errors must be positive.
+        let total = |error: &f64| error.hypot(scatter).max(1e-100);
+        error.iter().map(total).collect()
+    };
+    let alike = fit_line(x, y, &vec![1.0; x.len()])?;
+    let freedom = alike.degrees_of_freedom as f64;
+    // With this scatter chi^2 is n - 2 at most whatever the errors are, and just that without errors.
+    let (mut least, mut most) = (0.0, (alike.chi_squared / freedom).sqrt());
+    if error.iter().any(|error| *error > 0.0) {
+        while most - least > 1e-12 * most {
+            let middle = 0.5 * (least + most);
+            match fit_line(x, y, &with(middle))?.chi_squared > freedom {
+                true => least = middle,
+                false => most = middle,
+            }
+        }
+    }
+    Ok(with(most))
 }
 
 /// Exponent of a power law y = A x^slope, as a line through the logarithms.
@@ -321,7 +348,7 @@ mod tests {
                 let y =
                     |i: usize| 3.0 - 3.75 * RATES[i] + bend * RATES[i].powi(2) + 0.01 * noise[i];
                 let y: Vec<f64> = (0..5).map(y).collect();
-                fit_line_to_scatter(&RATES[..5], &y).unwrap()
+                fit_line_to_scatter(&RATES[..5], &y, &[0.0; 5]).unwrap()
             });
             covered[0] += usize::from(straight.line.slope.interval_68.contains(-3.75));
             covered[1] += usize::from(straight.line.slope.interval_95.contains(-3.75));
@@ -335,8 +362,44 @@ mod tests {
         assert_coverage(bent[0], trials, 0.05, 0.0, "false bends");
         assert!(bent[1] > trials / 2, "{bent:?}");
         assert_refused!(
-            fit_line_to_scatter(&[1.0, 2.0, 2.0], &[1.0; 3]) =>
+            fit_line_to_scatter(&[1.0, 2.0, 2.0], &[1.0; 3], &[0.0; 3]) =>
             TooFewPlaces { needed: 3, found: 2 }
+        );
+    }
+
+    /// Errors that suffice stay as they are, those that do not grow by one scatter, and where there is nothing else all points
+    /// weigh alike: one rule between the weighted line and the plain one.
+    #[test]
+    fn scatter_is_added_where_errors_do_not_explain_it() {
+        let trials = 1000;
+        let mut covered = 0;
+        for seed in 0..trials {
+            let y = noisy(seed, 0.0);
+            // A further scatter of the size of the errors, of which these know nothing.
+            let more = white_noise(seed + 5000, RATES.len());
+            let y: Vec<f64> = y
+                .iter()
+                .zip(&more)
+                .map(|(y, more)| y + 0.02 * more)
+                .collect();
+            let fit = fit_line_to_scatter(&RATES, &y, &ERRORS).unwrap();
+            let reduced = fit.line.chi_squared / 4.0;
+            assert!(reduced <= 1.0 + 1e-9, "{reduced}");
+            covered += usize::from(fit.line.slope.interval_95.contains(-3.75));
+        }
+        assert_coverage(covered, trials as usize, 0.95, 0.02, "slope");
+        let y = RATES.map(|rate| 3.0 - 3.75 * rate + if rate == 0.1 { 0.01 } else { 0.0 });
+        let [free, known] = [[0.0; 6], [0.1; 6]].map(|error| {
+            let fit = fit_line_to_scatter(&RATES, &y, &error).unwrap();
+            fit.line
+        });
+        let plain = fit_line(&RATES, &y, &[0.1; 6]).unwrap();
+        assert!((free.slope.value - plain.slope.value).abs() < 1e-12);
+        assert!((free.chi_squared - 4.0).abs() < 1e-9);
+        assert_eq!(known.slope.error, plain.slope.error);
+        assert_refused!(
+            fit_line_to_scatter(&RATES, &RATES, &[-0.1; 6]) =>
+            NotPositive { index: 0, .. }
         );
     }
 

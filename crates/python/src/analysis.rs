@@ -251,8 +251,8 @@ pub(crate) fn fit_inverse_parabola(width: Column, value: Column, error: Column) 
 }
 
 #[pyfunction]
-pub(crate) fn fit_line_to_scatter(x: Column, y: Column) -> Answer {
-    answer(|| analysis::fit_line_to_scatter(&x, &y))
+pub(crate) fn fit_line_to_scatter(x: Column, y: Column, error: Column) -> Answer {
+    answer(|| analysis::fit_line_to_scatter(&x, &y, &error))
 }
 
 #[pyfunction]

@@ -238,6 +238,11 @@ impl<'a> Row<'a> {
         self.number("time")
     }
 
+    /// Volume fraction in hundredths: the number of grains is whole, so that fractions differ a little from those asked for.
+    pub(crate) fn volume_fraction(&self) -> f64 {
+        (self.number("volume_fraction") * 100.0).round() / 100.0
+    }
+
     /// Late mean of J/Jmax.
     pub(crate) fn flow_rate_ratio(&self) -> f64 {
         self.number("flow_rate_ratio")

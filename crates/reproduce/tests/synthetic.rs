@@ -357,6 +357,52 @@ fn leaking_strain_rates_are_left_out_everywhere() {
     assert_says(&found.walls[0].why, "left out for leaks: *ρ* = 0.6");
 }
 
+/// Nine replicates are too few for any verdict: each claim can also stay open.
+#[test]
+fn too_few_runs_leave_every_verdict_open() {
+    let mut evidence = rows::evidence(&[]);
+    for (study, rows) in [
+        ("divergence-fine", SOURCE.divergence(Lattice::FINE)),
+        ("branches-fine", SOURCE.branches(Lattice::FINE)),
+        ("density-fine", SOURCE.density(Lattice::FINE)),
+    ] {
+        let few = rows.only(|_, numbers| numbers["replicate"] < 9.0);
+        evidence.add_table(study, few.table()).unwrap();
+    }
+    for id in ["F1", "F2", "F3", "F4", "F5", "F6", "F7", "F8", "F9"] {
+        let found = examine(id, &evidence);
+        assert_verdict(&found, Verdict::Open);
+        assert_says(&found.walls[0].why, "too few runs for a verdict");
+    }
+}
+
+/// REFEREE, F9: jams of denser grains have contacts; whether both flows exist there is told, either way.
+#[test]
+fn denser_grains_are_told_from_both_starts() {
+    let mut evidence = rows::evidence(&[]);
+    SOURCE.on(Lattice::FINE, "fine", &mut evidence);
+    let mut dense = Rows::default();
+    for (fraction, hysteresis) in [(0.3, 0.1), (0.45, 0.0)] {
+        let tube = Tube {
+            hysteresis,
+            ..SOURCE
+        };
+        let branches = tube.branches(Lattice::FINE);
+        let mut rows = branches.only(|_, numbers| numbers["strain_rate"] == 0.1);
+        rows.set("volume_fraction", fraction);
+        rows.set("contacts", 5.0);
+        dense.extend(&rows);
+    }
+    evidence.add_table("dense-jams", dense.table()).unwrap();
+    let found = examine("F9", &evidence);
+    let told = found.paragraphs.last().unwrap();
+    assert_says(
+        told,
+        "both flows beyond *w*_{c} at *ρ* = 0.3, one at *ρ* = 0.45.",
+    );
+    assert_says(told, "with 5.0 contacts a grain");
+}
+
 /// Runs next to w_c, of a study of their own, are read with those of the divergence.
 #[test]
 fn runs_near_the_critical_width_are_joined() {

@@ -14,6 +14,7 @@ const STUDIES: &[&str] = &[
     "branches-*",
     "second-moment",
     "length",
+    "longest-tubes",
 ];
 
 pub(super) const CLAIM: Claim = Claim::new("F5", PROSE, STUDIES, examine);
@@ -236,15 +237,18 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if rows.is_empty() {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
-    let lengths = against_length(&evidence.study("length")?.rows());
+    let mut tubes = evidence.study("length")?.rows();
+    tubes.extend(evidence.study("longest-tubes")?.rows());
+    let lengths = against_length(&tubes);
     // The moment of J itself is that of J/Jmax times the square of the length.
     let length = lengths.map(|power| Uncertain::normal(2.0 + power.value, power.error));
     draft.quantity("length", &[], length);
     let summary = PROSE.text("summary", &[]);
     let saturated = number(100.0 * SATURATED, 0);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(saturated));
-    if let Some(length) = length {
-        draft.paragraph("extensive", values!(length));
+    let waves = ends(tubes.iter().map(|row| row.number("waves")));
+    if let (Some(length), Some((least, most))) = (length, waves) {
+        draft.paragraph("extensive", values!(length, least, most));
     }
     draft.table("peaks", &[], rows);
     draft.chart("second-moment-peak", &[], against_distance(&walls))?;

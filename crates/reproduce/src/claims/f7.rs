@@ -1,6 +1,6 @@
 //! F7: how the critical width depends on the strain rate.
 
-use peristalsis_analysis::{LineFit, ScatteredLine, fit_line_to_scatter, fit_parabola};
+use peristalsis_analysis::{LineFit, ScatteredLine, fit_line_to_scatter};
 
 use super::prelude::*;
 
@@ -46,11 +46,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     Ok(draft.judged(judgement, &summary))
 }
 
-/// A line by least squares, every strain rate with the same weight, as one draws it through points. `None` with too few
-/// strain rates.
+/// The line of a wall, through critical widths with their errors and a scatter of their own. `None` with too few strain rates.
 fn straight(critical: &Critical) -> Option<ScatteredLine> {
-    let [rate, width, _] = columns(critical.iter().copied(), 0.0);
-    let line = fit_line_to_scatter(&rate, &width).ok()?;
+    let [rate, width, error] = columns(critical.iter().copied(), 0.0);
+    let line = fit_line_to_scatter(&rate, &width, &error).ok()?;
     (rate.len() >= LEAST_RATES).then_some(line)
 }
 
@@ -74,36 +73,11 @@ fn part(
         draft.compared("slope", values!(wall, rates), line.slope, SLOPE);
         draft.quantity("intercept", values!(wall, rates), line.intercept);
     }
-    let [rate, width, error] = columns(critical.iter().copied(), 0.0);
-    let mut why = rates_in_words(one);
-    // By the scatter of the points alone, and by their errors.
-    let mut linearity = [line.and_then(|line| line.linearity), None];
-    let mut slopes = [line.and_then(has_the_slope), None];
-    if let Ok(curve) = fit_parabola(&rate, &width, &error) {
-        let weighted = slope(&curve.line);
-        let (chi_squared, freedom) = (curve.line.chi_squared, curve.line.degrees_of_freedom);
-        let chi_squared = number(chi_squared, 1);
-        draft.compared(
-            "weighted slope",
-            values!(wall, rates, chi_squared, freedom),
-            weighted,
-            SLOPE,
-        );
-        linearity[1] = Some(curve.linearity);
-        slopes[1] = agrees(&weighted, SLOPE);
-        let [scatter, errors] = linearity.map(|one| cell_of(one, probability));
-        let bend = curve.quadratic;
-        draft.compared("curvature", values!(wall, scatter, errors), bend, 0.0);
-        let bend = PROSE.text("bend", values!(weighted, scatter, errors));
-        why = format!("{why}; {bend}");
-    }
-    // Points that scatter more than their errors say bend where even that scatter does not hide it.
-    let bends = |one: f64| one < BY_CHANCE;
-    let is_straight = linearity.iter().all(Option::is_some);
-    let is_straight = is_straight.then(|| !linearity.into_iter().flatten().all(bends));
-    // One slope that agrees beside one that does not says nothing.
-    let has_the_slope = slopes[0].filter(|_| slopes[0] == slopes[1]);
-    let holds = all_hold(&[is_straight, has_the_slope]);
+    let linearity = line.and_then(|line| line.linearity);
+    let (rates, straight) = (rates_in_words(one), cell_of(linearity, probability));
+    let why = PROSE.text("why", values!(rates, straight));
+    let is_straight = linearity.map(|chance| chance >= BY_CHANCE);
+    let holds = all_hold(&[is_straight, line.and_then(has_the_slope)]);
     let slope = line.map(|line| line.line.slope);
     let determination = cell_of(line, |line| number(line.determination, 3));
     let words = PROSE.text("number", values!(slope = cell(slope), determination));

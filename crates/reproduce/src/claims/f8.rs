@@ -34,7 +34,7 @@ impl<'a> Density<'a> {
         let compared = branch.points.iter().find(is_compared);
         let critical = crossing(rows).map(|found| found.width).or_else(bracket);
         Self {
-            fraction: (rows[0].number("volume_fraction") * 100.0).round() / 100.0,
+            fraction: rows[0].volume_fraction(),
             critical,
             escaped: leak(rows, critical.map(|width| width.value)),
             near: Line::at_own_threshold(rows).and_then(|line| Near::of(&line)),
@@ -54,9 +54,7 @@ impl<'a> Density<'a> {
 
     /// The densities of a study, ascending.
     fn all_of(rows: Vec<Row<'a>>) -> Vec<Self> {
-        // The number of grains is whole, so that fractions differ a little from those asked for.
-        let key = |row: &Row<'_>| (row.number("volume_fraction") * 100.0).round();
-        let groups = grouped(rows, key).into_iter();
+        let groups = grouped(rows, Row::volume_fraction).into_iter();
         groups.map(|(_, rows)| Self::of(&rows)).collect()
     }
 

@@ -5,7 +5,7 @@ use peristalsis_analysis::{Family, Transition, fit_lifetime};
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f9.md"));
-const STUDIES: &[&str] = &["branches-*", "loop-*", "jam-lifetime"];
+const STUDIES: &[&str] = &["branches-*", "loop-*", "dense-jams", "jam-lifetime"];
 
 pub(super) const CLAIM: Claim = Claim::new("F9", PROSE, STUDIES, examine);
 
@@ -196,6 +196,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (contacts, chance, next) = (LEAST_CONTACTS, ONE_FLOW_BY_CHANCE, NEXT_TO_THE_FALL);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(contacts, chance, next));
     draft.table("loops", &[], rows);
+    of_dense_grains(&mut draft, evidence.study("dense-jams")?.rows());
     let rows = lifetimes(evidence.study("jam-lifetime")?.rows());
     if !rows.is_empty() {
         draft.table("lifetimes", &[], rows);
@@ -220,6 +221,87 @@ fn part(one: &OnWall<Loop<'_>>) -> Part {
     let count = PROSE.text("count", values!(count = rates.count()));
     let why = PROSE.text("why", values!(rates = rates.in_words(), broken));
     one.part(rates.hold(), count, why)
+}
+
+/// Denser grains from both starts at one width.
+struct Dense {
+    fraction: f64,
+    width: f64,
+    /// J/Jmax from rest, and from jammed.
+    flows: [Uncertain; 2],
+    /// Contacts a grain of the runs that began jammed.
+    contacts: f64,
+}
+
+impl Dense {
+    fn of((fraction, width): (f64, f64), rows: &[Row<'_>]) -> Option<Self> {
+        let from = |start: Start| -> Vec<Row<'_>> {
+            let settled = |row: &&Row<'_>| row.start() == start && row.is_stationary();
+            rows.iter().filter(settled).copied().collect()
+        };
+        let [rest, jammed] = [Start::Rest, Start::Jammed].map(from);
+        (rest.len() > 1 && jammed.len() > 1).then(|| Self {
+            fraction,
+            width,
+            contacts: scattered(&jammed, |row| row.number("contacts")).value,
+            flows: [rest, jammed].map(|rows| scattered(&rows, Row::flow_rate_ratio)),
+        })
+    }
+
+    /// Difference of the flows.
+    fn apart(&self) -> f64 {
+        self.flows[1].value - self.flows[0].value
+    }
+
+    /// Whether the starts end in two flows.
+    fn is_bistable(&self) -> bool {
+        let error = self.flows[0].error.hypot(self.flows[1].error);
+        self.apart() > LEAST_FALL && self.apart() > CLEAR * error
+    }
+
+    fn row(&self) -> Vec<String> {
+        let [rest, jammed] = self.flows.map(|flow| cell(Some(flow)));
+        let numbers =
+            [(self.fraction, 2), (self.width, 4)].map(|(one, digits)| number(one, digits));
+        let [fraction, width] = numbers;
+        vec![fraction, width, rest, jammed, number(self.contacts, 1)]
+    }
+}
+
+/// Whether denser grains, which touch one another for long, have both flows.
+fn of_dense_grains(draft: &mut Draft, rows: Vec<Row<'_>>) {
+    let key = |row: &Row<'_>| (row.volume_fraction(), row.width());
+    let groups = grouped(rows, key).into_iter();
+    let found: Vec<Dense> = groups
+        .filter_map(|(at, rows)| Dense::of(at, &rows))
+        .collect();
+    let clearest = found
+        .iter()
+        .max_by(|one, other| one.apart().total_cmp(&other.apart()));
+    let Some(clearest) = clearest else {
+        return;
+    };
+    let both = grouped(found.iter(), |one| one.fraction).into_iter();
+    let of_both = |is: bool| {
+        let those = both
+            .clone()
+            .filter(|(_, widths)| widths.iter().any(|one| one.is_bistable()) == is);
+        match listed(those.map(|(fraction, _)| fraction)) {
+            none if none.is_empty() => "none".to_owned(),
+            some => some,
+        }
+    };
+    let (two, one) = (of_both(true), of_both(false));
+    let Dense {
+        fraction, width, ..
+    } = clearest;
+    let [rest, jammed] = clearest.flows;
+    let contacts = number(clearest.contacts, 1);
+    draft.paragraph(
+        "dense",
+        values!(two, one, fraction, width, rest, jammed, contacts),
+    );
+    draft.table("dense", &[], found.iter().map(Dense::row));
 }
 
 /// How long jams last in tubes too wide for them.

@@ -8,8 +8,9 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q2.md"));
 
-pub(super) const CLAIM: Claim =
-    Claim::new("Q2", PROSE, &["roughness", "walls", "wavelength"], examine);
+const STUDIES: &[&str] = &["roughness", "walls", "walls-drawn", "wavelength"];
+
+pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, STUDIES, examine);
 
 /// How deep a grain sinks between three wall spheres \[d\], all of one diameter: d − (d² − s²)^{1/2}, s the circumradius of
 /// the triangle that two neighbours of a ring make with one of the next. Larger spacings than d let a grain through.
@@ -101,7 +102,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let of_one_speed = |row: &Row<'_>| (row.wave_speed() - 1.0).abs() < 1e-6;
     let mut waves = evidence.study("wavelength")?.rows();
     waves.retain(of_one_speed);
-    candidates(&mut draft, evidence.study("walls")?.rows(), &waves);
+    let mut others = evidence.study("walls")?.rows();
+    others.extend(evidence.study("walls-drawn")?.rows());
+    candidates(&mut draft, others, &waves);
     draft.table("lattices", &[], walls.iter().map(Wall::row));
     draft.chart("roughness", &[], ChartFigure::new(panel))?;
     Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
@@ -128,14 +131,12 @@ impl Candidate {
         let first = rows.first()?;
         let (mut widths, mut amplitudes, mut escaped) = (Vec::new(), Vec::new(), 0.0_f64);
         for (rate, rows) in by_strain_rate(rows.iter().copied()) {
-            let Some(critical) = crossing(&rows).map(|crossing| crossing.width) else {
+            let critical = crossing(&rows).map(|crossing| crossing.width);
+            let outside = leak(&rows, critical.map(|width| width.value));
+            escaped = escaped.max(outside);
+            let Some(critical) = critical.filter(|_| outside <= MOST_ESCAPED) else {
                 continue;
             };
-            let outside = leak(&rows, Some(critical.value));
-            escaped = escaped.max(outside);
-            if outside > MOST_ESCAPED {
-                continue;
-            }
             widths.push((rate, critical));
             let distance = |row: &Row<'_>| critical.value - row.width();
             let claimed =

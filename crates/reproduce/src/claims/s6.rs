@@ -250,9 +250,28 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.paragraph("tubes", &[]);
     let (apart, within) = (100.0 * MATCHED, 100.0 * WITHIN_A_MODEL);
     draft.paragraph("method", values!(apart, within));
+    if !matched.is_empty() {
+        draft.chart("matched", &[], throats(&matched))?;
+    }
     figures::profiles(&mut draft, elastic, prescribed)?;
     let statistics = together(judged(&lines));
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
+}
+
+/// Velocities in the throat of both models against the bottleneck.
+fn throats(matched: &[Matched]) -> ChartFigure {
+    let model = |(place, name): (usize, &str)| {
+        let means = matched
+            .iter()
+            .map(|one| (one.bottleneck, one.means()[place]));
+        joined(name, means).map(|points| points.series(place))
+    };
+    let models = ["frictional", "frictionless"].into_iter().enumerate();
+    let panel = ChartPanel::new(
+        "bottleneck, *w*/2*a*",
+        "axial velocity in the throat, *v_z*/*c*",
+    );
+    ChartFigure::new(panel.with_all(models.flat_map(model)))
 }
 
 /// To three digits behind the point.

@@ -11,7 +11,7 @@ use crate::report::markup::markdown;
 use crate::report::{Report, page};
 
 /// Numbers and cells of a table that a section shows at most; all are in the page and in `claims.json`.
-const MOST_NUMBERS: usize = 4;
+const MOST_NUMBERS: usize = 3;
 const MOST_CELLS: usize = 45;
 
 /// What stands above the table.
@@ -168,7 +168,14 @@ fn digest(finding: &Finding) -> Option<ReportTable> {
         small.clone()
     } else {
         let quantities = finding.quantities.iter().take(MOST_NUMBERS);
-        ReportTable::new("", ["number", "ours", "source"], quantities.map(cells))
+        let is_sourced = quantities.clone().any(|one| one.source.is_some());
+        let shown = if is_sourced { 3 } else { 2 };
+        let rows = quantities.map(|one| cells(one)[..shown].to_vec());
+        ReportTable::new(
+            "",
+            ["number", "ours", "source"].into_iter().take(shown),
+            rows,
+        )
     };
     (!found.rows.is_empty()).then(|| {
         let marked = |cells: &Vec<String>| -> Vec<String> {
@@ -183,13 +190,13 @@ fn digest(finding: &Finding) -> Option<ReportTable> {
 }
 
 /// A number with its unit, ours, and that of the source.
-fn cells(quantity: &Quantity) -> Vec<String> {
+fn cells(quantity: &Quantity) -> [String; 3] {
     let ours = quantity.ours.as_ref();
     let unit = match &*quantity.unit {
         "" | "1" => String::new(),
         unit => format!(" [{unit}]"),
     };
-    vec![
+    [
         format!("{}{unit}", quantity.name),
         ours.map_or_else(|| "not determined".to_owned(), ToString::to_string),
         quantity.source.map_or_else(String::new, plain),

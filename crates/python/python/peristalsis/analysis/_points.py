@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
-from ._columns import Numbers, Uncertain, columns, law_of, pair, result
+from ._columns import Numbers, Uncertain, columns, law_of, pair, reals, result
 
 if TYPE_CHECKING:
     from ._columns import _Law
@@ -161,14 +161,14 @@ class NearestFit:
 
 @dataclass(frozen=True)
 class ScatteredLine:
-    """A straight line through points whose scatter about it is the only error known.
+    """A straight line through points that scatter about it by more than their errors.
 
     Attributes
     ----------
     line : LineFit
-        The line; its errors are those of the scatter, the intervals of intercept and slope Student's.
+        The line; its errors are those of points and scatter, the intervals of intercept and slope Student's.
     determination : float
-        R^2, the part of the variance of y that the line explains.
+        R^2, the part of the weighted variance of y that the line explains.
     linearity : float or None
         Probability of a quadratic term at least as large if the points scatter about a line: F-test of line against
         parabola; `None` with three places, through which every parabola goes.
@@ -346,16 +346,18 @@ def fit_parabola(x: Numbers, y: Numbers, error: Numbers) -> CurveFit:
     return result(CurveFit, _core.fit_parabola(*columns(x, y, error)))
 
 
-def fit_line_to_scatter(x: Numbers, y: Numbers) -> ScatteredLine:
-    """A straight line through points of unknown errors, all alike, as one draws it by least squares.
+def fit_line_to_scatter(x: Numbers, y: Numbers, error: Numbers | None = None) -> ScatteredLine:
+    """A straight line through points that scatter by more than their errors, or whose errors are unknown.
 
-    The variance of the points is chi^2/(n - 2) about the line, so that intercept and slope follow Student's distribution of
-    n - 2 degrees of freedom.
+    Each point gets the error (error_i^2 + s^2)^(1/2), with the scatter s at which chi^2 about the line is n - 2, or 0 where
+    the errors suffice. Intercept and slope follow Student's distribution of n - 2 degrees of freedom.
 
     Parameters
     ----------
     x, y : array_like
         Abscissae and ordinates, shape (n,).
+    error : array_like, optional
+        Standard errors of y, 0 or more, shape (n,). Without them all points weigh alike, as one draws a line through them.
 
     Returns
     -------
@@ -365,13 +367,14 @@ def fit_line_to_scatter(x: Numbers, y: Numbers) -> ScatteredLine:
     Raises
     ------
     AnalysisError
-        Below 3 distinct abscissae.
+        Below 3 distinct abscissae, for an error below 0.
     ValueError
         For columns of unequal length.
 
     Notes
     -----
-    Bevington & Robinson, Data Reduction and Error Analysis (2003), chapters 6 and 11.
+    Paule & Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982); Bevington & Robinson, Data Reduction and Error Analysis (2003),
+    chapters 6 and 11.
 
     Examples
     --------
@@ -380,7 +383,8 @@ def fit_line_to_scatter(x: Numbers, y: Numbers) -> ScatteredLine:
     >>> print(fit.line.slope)
     0.96 +- 0.057
     """
-    return result(ScatteredLine, _core.fit_line_to_scatter(*columns(x, y)))
+    known = [0.0] * len(reals(y)) if error is None else error
+    return result(ScatteredLine, _core.fit_line_to_scatter(*columns(x, y, known)))
 
 
 def power_exponent(x: Numbers, y: Numbers, error: Numbers) -> LineFit:
