@@ -12,6 +12,7 @@ use peristalsis_reproduce::{CLAIMS, Extent};
 use peristalsis_run::{Run, Span, TrajectoryFormat, Window};
 
 use crate::choice::{Offered, TRAJECTORIES, one_of};
+use crate::commands::design::DesignArguments;
 use crate::commands::render::RenderArguments;
 use crate::commands::schema::SchemaArguments;
 use crate::commands::study::{StudyCommand, WorkArguments, time_span};
@@ -40,6 +41,8 @@ pub(crate) enum Command {
     Figures(FiguresArguments),
     /// Say what would run and how long it would take, and warn of what looks doubtful; computes nothing.
     Check(CheckArguments),
+    /// Say what to expect of a pump: dimensionless groups, the published runs like it, cost; runs nothing.
+    Design(DesignArguments),
     /// Write the spheres of a run, from its saved state on, for other programs to open.
     Trajectory(TrajectoryArguments),
     /// Draw the tube of a run, as picture or film: from the side, cut across, or wave by wave in time.

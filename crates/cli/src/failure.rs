@@ -91,6 +91,12 @@ impl Failure {
         move |source| Self::Read { path, source }
     }
 
+    /// A file that cannot be written.
+    pub(crate) fn write(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Write { path, source }
+    }
+
     /// A command line that asks for something that does not exist, and what to ask for instead.
     pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Usage {

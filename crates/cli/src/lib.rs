@@ -30,6 +30,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Runs(arguments) => commands::runs::runs(&arguments),
         Command::Figures(arguments) => commands::figures::figures(&arguments),
         Command::Check(arguments) => commands::check::check(&arguments),
+        Command::Design(arguments) => commands::design::design(&arguments),
         Command::Trajectory(arguments) => commands::trajectory::trajectory(&arguments),
         Command::Render(arguments) => commands::render::render(&arguments),
         Command::View(arguments) => commands::view::view(&arguments),

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use peristalsis_configuration::{Configuration, PRESETS, SourceFile, Sources, preset};
 use peristalsis_engine::EngineError;
+use peristalsis_reproduce::design::is_design;
 use peristalsis_run::RunError;
 
 use crate::arguments::ConfigurationArguments;
@@ -16,22 +17,26 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
         let reason = "nothing to run: give a FILE or a --preset";
         return Err(Failure::usage(reason, known_presets()));
     }
-    let file = match &arguments.file {
-        None => None,
-        Some(path) => {
-            let text = text_of(path).map_err(|error| no_file(path, error))?;
-            let name = match is_standard_input(path) {
-                true => "standard input".to_owned(),
-                false => path.display().to_string(),
-            };
-            if is_a_study(&text) {
-                let reason = format!("{name} is a study, not the configuration of one run");
-                let help = format!("use: peristalsis study run {name}, or study plan {name}");
-                return Err(Failure::usage(reason, help));
-            }
-            Some((name, text))
+    let file = name_and_text(arguments)?;
+    if let Some((name, text)) = &file {
+        let (is, command) = if is_a_study(text) {
+            ("a study", format!("study run {name}, or study plan {name}"))
+        } else if is_design(text) {
+            (
+                "a design",
+                format!("design {name} --write FILE, then run FILE"),
+            )
+        } else {
+            ("", String::new())
+        };
+        if !is.is_empty() {
+            let reason = format!("{name} is {is}, not the configuration of one run");
+            return Err(Failure::usage(
+                reason,
+                format!("use: peristalsis {command}"),
+            ));
         }
-    };
+    }
     let overrides = arguments.overrides.iter().cloned();
     let overrides: Vec<String> = overrides.chain(arguments.length()).collect();
     Ok(Configuration::from_sources(&Sources {
@@ -39,6 +44,21 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
         preset: arguments.preset.as_deref(),
         overrides: &overrides,
     })?)
+}
+
+/// Name and text of the file that the arguments name, if they name one.
+pub(crate) fn name_and_text(
+    arguments: &ConfigurationArguments,
+) -> Result<Option<(String, String)>, Failure> {
+    let Some(path) = &arguments.file else {
+        return Ok(None);
+    };
+    let text = text_of(path).map_err(|error| no_file(path, error))?;
+    let name = match is_standard_input(path) {
+        true => "standard input".to_owned(),
+        false => path.display().to_string(),
+    };
+    Ok(Some((name, text)))
 }
 
 /// That a file cannot be read, which may be the name of a preset.

@@ -3,13 +3,15 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use peristalsis_physics::contact::{Normal, NormalLaw};
+use peristalsis_physics::contact::{Elasticity, Normal, NormalLaw};
 use peristalsis_physics::wall::{ElasticNetwork, SegmentDrive};
 
 use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
 use crate::keys::{DAMPINGS, exclusive_groups};
+use crate::materials::{self, MATERIAL};
 use crate::schema::{self, Choice};
+use crate::source::SourceFile;
 use crate::units;
 
 /// A key whose value decides which other keys have a meaning.
@@ -103,12 +105,17 @@ fn switch_of(choice: &Choice) -> Switch {
     switch
 }
 
+/// What scales a contact law of a name, with its default; `None` for a name that no law has.
+pub(crate) fn elasticity_of(law: &str) -> Option<Elasticity> {
+    let law = toml::Table::from_iter([("law".to_owned(), law.into())]);
+    let law: Normal = law.try_into().ok()?;
+    Some(law.elasticity())
+}
+
 /// The key that gives the elasticity of a contact law in SI.
 fn unit_of_elasticity(law: &str) -> String {
-    let law = toml::Table::from_iter([("law".to_owned(), law.into())]);
-    let law: Result<Normal, _> = law.try_into();
-    let law = law.expect("every parameter of a law has a default");
-    units::key(law.elasticity()).to_owned()
+    let elasticity = elasticity_of(law).expect("every parameter of a law has a default");
+    units::key(elasticity).to_owned()
 }
 
 /// Whether a key has a meaning where the switches stand as they do in a table; a switch that is not set has no value.
@@ -134,6 +141,9 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
         for key in group {
             document::remove(base, key);
         }
+    }
+    if document::entry(&layer, MATERIAL).is_some() {
+        materials::replace(base);
     }
     // A damping takes the place of a restitution with its speed.
     if DAMPINGS
@@ -185,7 +195,7 @@ fn drop_meaningless(base: &mut Table, layer: &Table, switch: &Switch) {
 }
 
 /// Tables are merged key by key, all other values replaced.
-fn merge(base: &mut Table, layer: Table) {
+pub(crate) fn merge(base: &mut Table, layer: Table) {
     for (key, mut entry) in layer {
         if let Node::Table(above) = &mut entry.item.node
             && let Some(below) = base.get_mut(&key)
@@ -198,6 +208,19 @@ fn merge(base: &mut Table, layer: Table) {
         }
         base.insert(key, entry);
     }
+}
+
+/// Parses a file with settings over it, a document of another kind that someone else checks and resolves.
+pub fn file_with_overrides(
+    file: SourceFile<'_>,
+    overrides: &[String],
+    problems: &mut Problems,
+) -> Table {
+    let mut table = document::parse_file(file, problems);
+    for text in overrides {
+        merge(&mut table, document::parse_override(text, problems));
+    }
+    table
 }
 
 /// Joins layers of settings into one; the last value of a key holds.

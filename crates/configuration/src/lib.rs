@@ -32,6 +32,7 @@ mod error;
 mod keys;
 mod layers;
 mod limits;
+mod materials;
 mod presets;
 mod reference;
 mod resolve;
@@ -47,7 +48,8 @@ pub use configuration::{
 };
 pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
-pub use layers::join;
+pub use layers::{file_with_overrides, join};
+pub use materials::{MATERIALS, Material, material};
 pub use peristalsis_physics::contact::{
     ContactModel, CundallStrack, DissipationForm, Elasticity, Normal, Sliding,
 };

@@ -33,6 +33,16 @@ pub const PRESETS: &[Preset] = &[
         summary: "Frictional grains in an elastic wall driven by a travelling force: jammed flow that gives way.",
         text: include_str!("../presets/frictional.toml"),
     },
+    Preset {
+        name: "sand-pump",
+        summary: "Sand with its weight in a lying hose that a wave squeezes to half of its bore, in SI units.",
+        text: include_str!("../presets/sand-pump.toml"),
+    },
+    Preset {
+        name: "soft-robot",
+        summary: "Plastic beads with their weight in a lying tube of four segments that close in turn, in SI units.",
+        text: include_str!("../presets/soft-robot.toml"),
+    },
 ];
 
 /// The preset of a name.

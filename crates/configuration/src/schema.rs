@@ -9,6 +9,7 @@ use serde_json::{Map, Value, json};
 
 use crate::configuration::Control;
 use crate::keys::{Keys, exclusive_groups};
+use crate::materials::MATERIALS;
 use crate::presets::PRESETS;
 
 /// JSON schema (draft 2020-12) of a configuration file.
@@ -125,6 +126,12 @@ fn build() -> Value {
         "enum": names,
         "description": "Preset that this file builds on; the file's own keys replace the preset's.",
     });
+    let materials = MATERIALS
+        .iter()
+        .map(|it| json!({"const": it.name, "description": it.description(), "type": "string"}));
+    let materials: Vec<Value> = materials.collect();
+    let material = &mut schema["properties"]["units"]["properties"]["material"];
+    *material = json!({"description": material["description"], "oneOf": materials});
     schema["properties"]["resolved"] = json!({
         "type": "object",
         "description": "Values derived from the keys, as a run's record states them. Read and ignored.",

@@ -14,6 +14,7 @@ mod collapse;
 mod columns;
 mod contents;
 mod critical;
+pub mod design;
 mod draft;
 mod error;
 mod evidence;

@@ -140,7 +140,7 @@ pub fn estimate_by(
         steps: configuration.run.steps(),
         contact_time: contact_time(configuration),
         steps_per_contact: contact_time(configuration) / configuration.run.time_step,
-        restitution: restitution(configuration),
+        restitution: restitution_at_wave_speed(configuration),
         newtonian_flow_rate_ratio: newtonian_reference(configuration).map(|reference| reference.0),
         si: si.map(|units| SiEstimate::of(configuration, units)),
         packing_seconds: trial.packing_seconds,
@@ -158,7 +158,7 @@ fn in_the_end(warning: Warning) -> Warning {
 }
 
 /// e of two grains of the mean diameter that meet at the speed of the wave.
-fn restitution(configuration: &Configuration) -> f64 {
+pub fn restitution_at_wave_speed(configuration: &Configuration) -> f64 {
     let Grains {
         diameter_min,
         diameter_max,

@@ -27,7 +27,7 @@ mod warnings;
 
 pub use assemble::{PlacedGrains, assemble, scheduled_wavelengths, walls};
 pub use error::RunError;
-pub use estimate::{Estimate, estimate, estimate_by};
+pub use estimate::{Estimate, estimate, estimate_by, restitution_at_wave_speed};
 pub use folder::{RunFolder, Written, next_folder, read_state, write_state};
 pub use pace::Pace;
 pub use peristalsis_configuration::Configuration;
@@ -52,7 +52,7 @@ pub use trajectory::{
     FrameFile, FrameFormat, FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan,
     TrajectoryReport, TrajectoryRequest, Window,
 };
-pub use warnings::{Warning, warnings};
+pub use warnings::{Warning, overlap_at_wave_speed, warnings};
 
 /// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
 /// results, so that no old run is taken for a new one, and none goes on as another.

@@ -26,7 +26,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     print_report(arguments.json, &estimate, || in_words(&estimate))
 }
 
-fn in_words(estimate: &Estimate) -> String {
+pub(super) fn in_words(estimate: &Estimate) -> String {
     let duration = estimate.duration;
     let mut lines = vec![
         format!(

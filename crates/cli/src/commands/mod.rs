@@ -2,6 +2,7 @@
 
 pub(crate) mod check;
 pub(crate) mod completions;
+pub(crate) mod design;
 pub(crate) mod figures;
 pub(crate) mod newtonian;
 pub(crate) mod presets;

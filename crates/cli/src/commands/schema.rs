@@ -26,7 +26,11 @@ pub(crate) fn study_schema(arguments: SchemaArguments) -> Result<ExitCode, Failu
 }
 
 /// `elsewhere` is a table that the tables of keys leave out.
-fn show(arguments: SchemaArguments, schema: &Value, elsewhere: &str) -> Result<ExitCode, Failure> {
+pub(super) fn show(
+    arguments: SchemaArguments,
+    schema: &Value,
+    elsewhere: &str,
+) -> Result<ExitCode, Failure> {
     print_report(!arguments.markdown, schema, || {
         reference(schema, &[elsewhere])
     })

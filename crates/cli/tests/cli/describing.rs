@@ -2,11 +2,13 @@
 
 use crate::Place;
 
-const PRESETS: [&str; 4] = [
+const PRESETS: [&str; 6] = [
     "frictionless",
     "frictionless-source",
     "frictionless-fine",
     "frictional",
+    "sand-pump",
+    "soft-robot",
 ];
 
 #[test]

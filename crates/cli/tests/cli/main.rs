@@ -5,6 +5,7 @@
 mod bad_input;
 mod checking;
 mod describing;
+mod designing;
 mod edges;
 mod folders;
 mod limits;

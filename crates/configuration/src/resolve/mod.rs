@@ -19,6 +19,7 @@ use crate::document::{self, Table};
 use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
 use crate::keys::{ALTERNATIVES, ContactKeys, Keys};
 use crate::layers::{self, list};
+use crate::materials;
 use crate::presets::{PRESETS, Preset, preset};
 use crate::schema;
 use crate::source::{Origin, Source, SourceFile, SourceKind, Sources};
@@ -115,7 +116,8 @@ fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> T
         && let Some(Preset { name, text, .. }) = preset(&name)
     {
         let source = Source::new(SourceKind::Preset, format!("preset {name}"), text);
-        table = checked(document::parse(&source, problems), problems);
+        let preset = checked(document::parse(&source, problems), problems);
+        layers::lay_over(&mut table, preset, problems);
     }
     let above = above.iter().map(|layer| {
         refuse_derived(layer, problems);
@@ -128,6 +130,7 @@ fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> T
     for aside in ["preset", "resolved"] {
         table.remove(aside);
     }
+    materials::fill(&mut table);
     table
 }
 

@@ -2,6 +2,7 @@
 
 mod errors;
 mod layers;
+mod materials;
 mod pumping;
 mod restitution;
 mod round_trip;

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 if TYPE_CHECKING:
     #: Names of the presets.
-    _Preset = Literal["frictionless", "frictionless-source", "frictionless-fine", "frictional"]
+    _Preset = Literal["frictionless", "frictionless-source", "frictionless-fine", "frictional", "sand-pump", "soft-robot"]
 
 
 class Keywords(TypedDict, total=False):
@@ -155,6 +155,12 @@ class Keywords(TypedDict, total=False):
     number.)"""
     law: Literal["linear", "hertz"]
     """contact.law. Normal contact law. It takes the keys that name it; friction goes with every law."""
+    material: Literal["glass", "sand", "steel", "pmma", "tablet"]
+    """units.material. What the grains are made of: stands for units.density, contact.static_friction and
+    kinetic_friction, the restitution (contact.restitution), and under contact.law = "hertz" for
+    contact.poisson_ratio and units.young_modulus. Values that the same file gives, or a later setting, hold
+    instead; of those of a preset only a modulus does. Grains as hard as the material take long: give a smaller
+    modulus."""
     natural_length: float
     """wall.natural_length. Natural length l of these springs; stress control. Default: 0.7 of the mean distance of
     lattice neighbours. An unstretched network buckles: keep it below the distance of neighbours. (Unit: d.)"""
@@ -294,6 +300,7 @@ class Keywords(TypedDict, total=False):
     units_acceleration: Sequence[float]
     units_density: float
     units_grain_diameter: float
+    units_material: Literal["glass", "sand", "steel", "pmma", "tablet"]
     units_stiffness: float
     units_wave_frequency: float
     units_young_modulus: float

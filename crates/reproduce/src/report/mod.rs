@@ -25,6 +25,7 @@ use crate::error::{ReproduceError, make_folder};
 use crate::{Drawn, Examination, Outcome, PublishedRows, Size, StudyOutcome, Verdict};
 
 pub(crate) use json::json_text;
+pub(crate) use page::STYLE;
 
 /// The page.
 const PAGE: &str = "report.html";

@@ -97,8 +97,8 @@ fn particular(configuration: &Configuration) -> Option<String> {
     let waveform = (waveform != WaveformName::Sine).then(|| word(waveform));
     let [x, y, z] = configuration.body.gravity;
     let force = match (x, y) {
-        (0.0, 0.0) => configuration.axial_body_force().to_string(),
-        _ => format!("({x}, {y}, {z})"),
+        (0.0, 0.0) => short(configuration.axial_body_force()),
+        _ => format!("({}, {}, {})", short(x), short(y), short(z)),
     };
     let force = configuration
         .has_body_force()
@@ -116,10 +116,17 @@ fn scheduled_value(
     match configuration.drive.schedule(parameter) {
         Some(schedule) => {
             let last = configuration.run.periods.unwrap_or(f64::INFINITY);
-            format!("{} to {}", schedule.value(0.0), schedule.value(last))
+            let ends = [schedule.value(0.0), schedule.value(last)].map(short);
+            ends.join(" to ")
         }
-        None => constant.to_string(),
+        None => short(constant),
     }
+}
+
+/// A number with six digits that say something at most: what SI has made of one has sixteen.
+fn short(value: f64) -> String {
+    let rounded: Option<f64> = format!("{value:.5e}").parse().ok();
+    rounded.unwrap_or(value).to_string()
 }
 
 fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
@@ -263,6 +270,13 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_in_a_title_are_as_short_as_they_can_be() {
+        let numbers = [0.05, 9.617_819_417_918_985e-4, -1.814_898e-4, 2.84375, 0.0];
+        let texts = ["0.05", "0.000961782", "-0.00018149", "2.84375", "0"];
+        assert_eq!(numbers.map(short), texts);
+    }
 
     #[test]
     fn a_late_mean_with_a_known_error_covers_the_last_part() {

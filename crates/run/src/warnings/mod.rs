@@ -10,7 +10,7 @@ mod warning;
 use peristalsis_configuration::{Configuration, Control, Schedule, ScheduledParameter};
 use peristalsis_physics::contact::NormalLaw;
 
-pub(crate) use softness::overlap_at_wave_speed;
+pub use softness::overlap_at_wave_speed;
 pub use warning::Warning;
 
 use crate::assemble::walls;

@@ -17,7 +17,7 @@ const MOST_STEPS_PER_PERIOD: f64 = 1e6;
 /// Overlap over diameter of two of the largest grains that meet at the speed c of the wave, without damping.
 ///
 /// The kinetic energy of the relative motion, (m/2) c^2/2, is stored at the turning point.
-pub(crate) fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
+pub fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
     let diameter = configuration.grains.diameter_max;
     let mass = diameter * diameter * diameter;
     let speed = configuration.wave_speed();

@@ -58,11 +58,24 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     }
     if let Some(pumping) = &summary.pumping {
         let (rise, power) = (pumping.pressure_rise, pumping.useful_power.0);
+        let in_si = (
+            summary.in_si(rise, Units::pressure),
+            summary.in_si(power, Units::power),
+        );
+        let load = match in_si {
+            (Some(rise), Some(power)) => {
+                let [rise, power] = [rise, power].map(|value| plain_text(&plain(value)));
+                format!("{rise} Pa over a wavelength: useful power {power} W")
+            }
+            _ => format!(
+                "{} m/(d t^2) over a wavelength: useful power {} m d^2/t^3",
+                significant(rise, 4),
+                significant(power, 4)
+            ),
+        };
+        let efficiency = efficiency(pumping);
         flow.push_str(&format!(
-            "\nagainst a pressure rise of {} m/(d t^2) over a wavelength: useful power {} m d^2/t^3, {}",
-            significant(rise, 4),
-            significant(power, 4),
-            efficiency(pumping)
+            "\nagainst a pressure rise of {load}, {efficiency}"
         ));
     }
     if let (Some((mass_flow, error)), Some(power), Some(pressure), Some(largest)) = (

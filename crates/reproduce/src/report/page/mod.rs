@@ -12,7 +12,7 @@ use crate::report::Report;
 use crate::report::markup::rich;
 use parts::{anchor, verdict_badge};
 
-const STYLE: &str = include_str!("style.css");
+pub(crate) const STYLE: &str = include_str!("style.css");
 const TITLE: &str = "Grains in a peristaltic tube";
 
 /// The whole page.

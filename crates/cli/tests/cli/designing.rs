@@ -1,0 +1,70 @@
+//! `peristalsis design`
+
+use crate::Place;
+
+const HOSE: &str = "[grain]\nmaterial = \"sand\"\ndiameter = 2e-3\n\n\
+                    [tube]\ndiameter = 6e-3\nwavelength = 20e-3\nocclusion = 0.3\nfill = 0.1\n\n\
+                    [drive]\nfrequency = 20.0\nperiods = 1\n";
+
+#[test]
+fn a_design_is_told_written_and_computed() {
+    let place = Place::new();
+    place.write("hose.toml", HOSE);
+    let told = place
+        .does("design hose.toml --write computed.toml --html hose.html")
+        .stdout;
+    for words in [
+        "clear bore over grain diameter",
+        "regime            ",
+        "outside the data  gravity across the tube",
+        "kg/h, all grains with the wave",
+        "expected time",
+    ] {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    let page = std::fs::read_to_string(place.path("hose.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") && page.contains("Design of hose"));
+    let json = place
+        .does("design hose.toml --json --set gravity=0 tube.occlusion=0.5")
+        .json();
+    assert_eq!(json["groups"][1]["name"], "occlusion");
+    assert_eq!(json["groups"][1]["value"], 0.5);
+    assert!(json["estimate"]["expected_seconds"].is_number());
+    let run = place
+        .does("run computed.toml --json --quiet --out hose")
+        .json();
+    assert_eq!(run["grains"], json["estimate"]["grains"]);
+    assert!(run["si"]["mass_flow_rate_kg_per_s"].is_number());
+    // Upright, the load and the power against it are told in SI.
+    place.does("design hose.toml tube.incline=90 --write up.toml");
+    let up = place.does("run up.toml --quiet --out up").stdout;
+    assert!(
+        up.contains("Pa over a wavelength: useful power") && up.contains(" W, efficiency"),
+        "{up}"
+    );
+    // A configuration in SI, too; and the keys of a design.
+    let preset = place.does("design --preset frictionless --json").json();
+    assert_eq!(
+        preset["largest_mass_flow_rate_kg_per_h"],
+        serde_json::Value::Null
+    );
+    let keys = place.does("design --keys --markdown").stdout;
+    assert!(
+        keys.contains("## [tube]") && keys.contains("`occlusion`"),
+        "{keys}"
+    );
+}
+
+#[test]
+fn a_design_that_is_wrong_is_refused_with_its_line_and_is_no_configuration() {
+    let place = Place::new();
+    place.write("hose.toml", HOSE.replace("occlusion", "oclusion"));
+    place.refuses("design hose.toml", &["hose.toml:8", "tube.occlusion"]);
+    place.refuses(
+        "run hose.toml",
+        &["is a design", "design hose.toml --write"],
+    );
+    place.write("hose.toml", HOSE);
+    place.refuses("design hose.toml --duration 3", &["use --periods"]);
+    place.refuses("design --preset frictional", &["prescribed wall"]);
+}

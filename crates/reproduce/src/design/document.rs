@@ -1,0 +1,320 @@
+//! The file of a design: grain, tube and drive as an engineer has them, in SI; and the configuration that computes it.
+
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+use peristalsis_configuration::document::{self, Table};
+use peristalsis_configuration::{
+    Configuration, ConfigurationError, Grains, MATERIALS, Material, Problem, ProblemKind, Problems,
+    SourceFile, check_against, file_with_overrides, material, schema_of,
+};
+use schemars::JsonSchema;
+use serde::Deserialize;
+use serde_json::{Value, json};
+
+/// Overlap of two grains that meet at the speed of the wave, over their diameter, at the stiffness that is chosen.
+const OVERLAP_OF_AN_IMPACT: f64 = 0.02;
+/// The same under the weight of the grains above and under the back pressure.
+const OVERLAP_OF_A_LOAD: f64 = 0.01;
+/// Wall spheres a ring for each diameter of the largest radius, and rings for each diameter of the wavelength: fewer leak.
+const WALL_SPHERES: [f64; 2] = [7.5, 1.3];
+
+/// A peristaltic pump for grains, in SI.
+#[derive(Deserialize, JsonSchema)]
+struct Keys {
+    /// Gravity; 0 for none.
+    #[serde(default = "earth")]
+    #[schemars(extend("x-unit" = "m s^-2", "minimum" = 0, "maximum" = 1e3))]
+    gravity: f64,
+    grain: GrainKeys,
+    tube: TubeKeys,
+    drive: DriveKeys,
+}
+
+fn earth() -> f64 {
+    9.81
+}
+
+/// The grains: a material, or density, friction and restitution, which hold beside a material too.
+#[derive(Deserialize, JsonSchema)]
+#[schemars(extend("additionalProperties" = false))]
+struct GrainKeys {
+    /// Mean diameter.
+    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 10))]
+    diameter: f64,
+    /// Diameters are uniform within this part of the mean to either side; 0: all alike.
+    #[serde(default)]
+    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 0.9))]
+    spread: f64,
+    /// What they are made of.
+    #[schemars(extend("enum" = names()))]
+    material: Option<String>,
+    /// Density of a grain.
+    #[schemars(extend("x-unit" = "kg m^-3", "exclusiveMinimum" = 0, "maximum" = 1e5))]
+    density: Option<f64>,
+    /// Friction of two grains, and of a grain and the wall.
+    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 10))]
+    friction: Option<f64>,
+    /// Restitution of two grains that meet.
+    #[schemars(extend("x-unit" = "1", "minimum" = 1e-3, "maximum" = 1))]
+    restitution: Option<f64>,
+    /// Stiffness of a contact in the computation. Missing: the least at which grains pass for solid: two that meet at the
+    /// speed of the wave overlap by 2 per cent of a diameter, those under weight and back pressure by 1 per cent.
+    #[schemars(extend("x-unit" = "N m^-1", "exclusiveMinimum" = 0, "maximum" = 1e15))]
+    stiffness: Option<f64>,
+}
+
+fn names() -> Vec<&'static str> {
+    MATERIALS.iter().map(|material| material.name).collect()
+}
+
+/// The tube.
+#[derive(Deserialize, JsonSchema)]
+#[schemars(extend("additionalProperties" = false))]
+struct TubeKeys {
+    /// Clear bore of the straight tube: the mean one of a sine, the open one of the other waveforms.
+    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 100))]
+    diameter: f64,
+    /// Length of a wave: the distance of two throats.
+    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e3))]
+    wavelength: f64,
+    /// Length, rounded to whole waves. Missing: two of them. The tube goes on as it begins (it is periodic).
+    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e5))]
+    length: Option<f64>,
+    /// Occlusion, 1 - (clear throat)/(clear bore): 0 is a straight tube, 1 is closed.
+    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1))]
+    occlusion: f64,
+    /// Volume of the grains over that of the straight tube.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 0.7))]
+    fill: f64,
+    /// Angle at which the wave climbs: 0 is a tube that lies, 90 one that pumps upward, -90 one that pumps downward.
+    #[serde(default)]
+    #[schemars(extend("x-unit" = "degrees", "minimum" = -90, "maximum" = 90))]
+    incline: f64,
+}
+
+/// How the tube is squeezed.
+#[derive(Deserialize, JsonSchema)]
+#[schemars(extend("additionalProperties" = false))]
+struct DriveKeys {
+    /// Squeezes a second at one place.
+    #[schemars(extend("x-unit" = "Hz", "exclusiveMinimum" = 0, "maximum" = 1e6))]
+    frequency: f64,
+    /// Shape of the wave: sine, bolus (one smooth squeeze), roller, or segments that close in turn.
+    #[serde(default = "sine")]
+    #[schemars(extend("enum" = ["sine", "bolus", "roller", "segments"]))]
+    waveform: String,
+    /// Segments a wavelength, with waveform = "segments".
+    #[schemars(extend("x-unit" = "1", "minimum" = 2, "maximum" = 32))]
+    segments: Option<u32>,
+    /// Pressure rise over a wavelength that the grains are pumped against, beside their weight.
+    #[serde(default)]
+    #[schemars(extend("x-unit" = "Pa", "minimum" = -1e9, "maximum" = 1e9))]
+    back_pressure: f64,
+    /// How long to compute, in periods.
+    #[serde(default = "ten")]
+    #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e6))]
+    periods: f64,
+}
+
+fn sine() -> String {
+    "sine".to_owned()
+}
+
+fn ten() -> f64 {
+    10.0
+}
+
+static SCHEMA: LazyLock<Value> = LazyLock::new(|| {
+    let mut schema = schema_of::<Keys>();
+    schema["title"] = json!("peristalsis design");
+    schema["additionalProperties"] = json!(false);
+    schema
+});
+
+/// JSON schema (draft 2020-12) of the file of a design.
+pub fn schema() -> Value {
+    SCHEMA.clone()
+}
+
+/// Whether a text is the file of a design, not a configuration.
+pub fn is_design(text: &str) -> bool {
+    let begins = |line: &str| {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        line == "[grain]" || line.starts_with("grain.")
+    };
+    text.lines().any(begins)
+}
+
+/// The configuration of a design as TOML, which `run` computes. Its lengths are in diameters of a mean grain.
+///
+/// # Errors
+/// Everything that is wrong in the file, with its line.
+pub fn configuration_text(
+    file: SourceFile<'_>,
+    overrides: &[String],
+) -> Result<String, ConfigurationError> {
+    let mut problems = Problems::default();
+    let table = file_with_overrides(file, overrides, &mut problems);
+    problems.check()?;
+    check_against(&SCHEMA, &table, &mut problems);
+    problems.place_in(file);
+    problems.check()?;
+    let keys = Keys::deserialize(document::to_toml(&table))
+        .expect("a file that follows the schema can be read");
+    check_together(&keys, &table, &mut problems);
+    problems.check()?;
+    let text = written(&keys, file.name);
+    Configuration::from_toml(&format!("the computation of {}", file.name), &text)?;
+    Ok(text)
+}
+
+/// What values must be together.
+fn check_together(keys: &Keys, table: &Table, problems: &mut Problems) {
+    let mut refuse = |kind, key: &str, message: String, help: &str| {
+        let mut problem = Problem::new(kind, message).key(key).help(help);
+        if let Some(entry) = document::entry(table, key) {
+            problem = problem.at(&entry.item.origin, "this value");
+        }
+        problems.push(problem);
+    };
+    let (grain, tube, drive) = (&keys.grain, &keys.tube, &keys.drive);
+    let given = [
+        ("grain.density", grain.density),
+        ("grain.friction", grain.friction),
+        ("grain.restitution", grain.restitution),
+    ];
+    let missing = given.into_iter().filter(|(_, value)| value.is_none());
+    let missing: Vec<&str> = missing.map(|(key, _)| key).collect();
+    if grain.material.is_none() && !missing.is_empty() {
+        refuse(
+            ProblemKind::Missing,
+            "grain.diameter",
+            format!("grains without grain.material need {}", missing.join(", ")),
+            &format!("give them, or grain.material: {}", names().join(", ")),
+        );
+    }
+    let largest = grain.diameter * (1.0 + grain.spread);
+    if tube.diameter < largest {
+        refuse(
+            ProblemKind::Inconsistent,
+            "tube.diameter",
+            format!(
+                "tube.diameter = {} is less than a grain, {largest}",
+                tube.diameter
+            ),
+            "tube.diameter is at least grain.diameter (1 + grain.spread)",
+        );
+    }
+    if drive.segments.is_some() && drive.waveform != "segments" {
+        refuse(
+            ProblemKind::Conflict,
+            "drive.segments",
+            format!(
+                "drive.segments belongs to drive.waveform = \"segments\", but here it is {:?}",
+                drive.waveform
+            ),
+            "remove drive.segments, or set drive.waveform = \"segments\"",
+        );
+    }
+}
+
+/// Stiffness of a contact \[N/m\] at which grains pass for solid.
+fn stiffness(keys: &Keys, density: f64) -> f64 {
+    let (grain, tube) = (&keys.grain, &keys.tube);
+    let d = grain.diameter;
+    let mass = PI / 6.0 * density * d * d * d;
+    let speed = keys.drive.frequency * tube.wavelength;
+    // m c^2/4 = k xi^2/2, two grains that meet at c.
+    let overlap = OVERLAP_OF_AN_IMPACT * d;
+    let of_impact = 0.5 * mass * speed * speed / (overlap * overlap);
+    let standing = tube.wavelength * tube.incline.to_radians().sin().abs();
+    let column = tube.diameter.max(standing) / d;
+    let weight = mass * keys.gravity * column;
+    let pressed = keys.drive.back_pressure.abs() * d * d;
+    of_impact.max(weight.max(pressed) / (OVERLAP_OF_A_LOAD * d))
+}
+
+/// A number with three digits.
+fn three_digits(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+fn written(keys: &Keys, name: &str) -> String {
+    let (grain, tube, drive) = (&keys.grain, &keys.tube, &keys.drive);
+    let d = grain.diameter;
+    let known: Option<&Material> = grain.material.as_deref().and_then(material);
+    let of = |given: Option<f64>, of_material: fn(&Material) -> f64| {
+        given.or(known.map(of_material)).unwrap_or_default()
+    };
+    let density = of(grain.density, |it| it.density);
+    let stiffness = grain
+        .stiffness
+        .unwrap_or_else(|| three_digits(stiffness(keys, density)));
+    let bore = tube.diameter / d;
+    // Half a wall sphere is within the radius on either side.
+    let radius = 0.5 * (bore + 1.0);
+    let width = (1.0 - tube.occlusion) * bore + 1.0;
+    let wavelength = tube.wavelength / d;
+    let waves = tube
+        .length
+        .map_or(2.0, |length| (length / tube.wavelength).round());
+    let waves = waves.max(1.0);
+    let sizes = Grains {
+        number: 0,
+        diameter_min: 1.0 - grain.spread,
+        diameter_max: 1.0 + grain.spread,
+    };
+    let length = waves * wavelength;
+    let volume = 1.5 * bore * bore * length / sizes.mean_cubed_diameter();
+    let number = (tube.fill * volume).round().max(1.0);
+    let widest = match drive.waveform.as_str() {
+        "sine" => 2.0 * radius - 0.5 * width,
+        _ => radius,
+    };
+    let segments = drive.segments.unwrap_or(4);
+    let is_segmented = drive.waveform == "segments";
+    let least_rings = if is_segmented { 2 * segments } else { 2 };
+    let ring = (WALL_SPHERES[0] * widest).ceil().max(6.0);
+    let rings = 2.0 * (0.5 * WALL_SPHERES[1] * wavelength).ceil();
+    let rings = rings.max(f64::from(least_rings));
+    let angle = tube.incline.to_radians();
+    let gravity = [0.0, -keys.gravity * angle.cos(), keys.gravity * angle.sin()];
+    // Dp in the unit of pressure, k/d, as a body force.
+    let pressure = drive.back_pressure * d / stiffness;
+    let body_force =
+        -pressure * waves * PI * radius * radius / (number * sizes.mean_cubed_diameter());
+    let [friction, restitution] = [
+        of(grain.friction, |it| it.friction),
+        of(grain.restitution, |it| it.restitution),
+    ];
+    let mut text = format!(
+        "# The computation of {name}: lengths are in diameters of a mean grain, {d} m; radii and widths run between the\n\
+         # centres of the wall's spheres.\n\n\
+         [units]\ngrain_diameter = {d:?}\ndensity = {density:?}\nstiffness = {stiffness:?}\nwave_frequency = {:?}\n",
+        drive.frequency
+    );
+    if keys.gravity > 0.0 {
+        text += &format!("acceleration = {gravity:?}\n");
+    }
+    text += &format!(
+        "\n[grains]\nnumber = {number}\ndiameter_min = {:?}\ndiameter_max = {:?}\n\n\
+         [contact]\nlaw = \"linear\"\nrestitution = {restitution:?}\nstatic_friction = {friction:?}\n\n\
+         [tube]\nradius = {radius:?}\nwavelength = {wavelength:?}\nwaves = {waves}\nspheres_per_ring = {ring}\n\
+         rings_per_wave = {rings}\n\n\
+         [drive]\ncontrol = \"strain\"\nwidth = {width:?}\nwaveform = {:?}\n",
+        sizes.diameter_min, sizes.diameter_max, drive.waveform
+    );
+    if is_segmented {
+        text += &format!("segments = {segments}\n");
+    }
+    if body_force != 0.0 {
+        text += &format!("body_force = {body_force:?}\n");
+    }
+    let lies = keys.gravity > 0.0 && tube.incline == 0.0;
+    let state = if lies { "settled" } else { "rest" };
+    text + &format!(
+        "\n[initial]\nstate = {state:?}\n\n[run]\nperiods = {:?}\n",
+        drive.periods
+    )
+}
