@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import os
 import sys
 from importlib import import_module
@@ -94,6 +95,9 @@ def _prepare(instance: Any, tube: Tube, grains: Grains, with_wall: bool) -> None
     instance.commands_list([*tube.law.commands(), *_neighbours(tube)])
     if with_wall:
         instance.commands_list(_wave(tube))
+    if any(tube.gravity):
+        size, towards = math.hypot(*tube.gravity), " ".join(map(repr, tube.gravity))
+        instance.command(f"fix weight grains gravity {size!r} vector {towards}")
     rotates = tube.law.friction is not None
     instance.commands_list([f"fix motion grains nve{'/sphere' if rotates else ''}", "thermo_modify lost ignore norm no"])
 

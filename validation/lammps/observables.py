@@ -22,6 +22,8 @@ class Observed:
     granular_temperature: float
     contacts: float
     rotational_energy: float
+    # Mean y of the grains.
+    height: float
     # The largest number seen.
     escaped: float
 
@@ -35,6 +37,7 @@ class Observed:
             float(np.mean([granular_temperature(course.velocities[frame]) for frame in later])),
             float(np.mean(contacts)),
             float(np.mean([rotational_energy(course.spins[frame]) for frame in later])),
+            float(np.mean([np.nanmean(course.positions[frame][:, 1]) for frame in later])),
             float(max(np.sum(~inside(course.tube, course.positions[frame], course.time(frame))) for frame in later)),
         )
 

@@ -46,6 +46,7 @@ class OwnTube:
             "drive.width": tube.width,
             "drive.strain_rate": tube.strain_rate,
             "run.time_step": tube.time_step,
+            "body.gravity": list(tube.gravity),
             # A static tube is sampled 200 times in a run, and a step must fit into that.
             "run.duration": 200 * max(1, frames) * steps * tube.time_step,
         }

@@ -16,7 +16,7 @@ from start_files import Lattice
 from store import Store
 from tubes import COARSE, FINE, Course, Tube
 
-NAME, FRICTIONAL_NAME = "stationary", "friction"
+NAME, FRICTIONAL_NAME, GRAVITY_NAME = "stationary", "friction", "gravity"
 SAMPLES_PER_PERIOD = 20
 OURS, THEIRS = "peristalsis", "LAMMPS"
 # No packing is used twice: the programs' samples are independent.
@@ -44,6 +44,7 @@ class Point:
     law: Law
     # At most so many rounds of runs.
     most_rounds: int
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def name(self) -> str:
@@ -56,7 +57,7 @@ class Point:
 
     @property
     def tube(self) -> Tube:
-        return Tube(self.lattice, self.width, self.strain_rate, self.law)
+        return Tube(self.lattice, self.width, self.strain_rate, self.law, gravity=self.gravity)
 
 
 def _line(
@@ -91,8 +92,16 @@ FRICTIONAL_POINTS = [
     *_line("linear", COARSE, FRICTIONAL, 0.002, (3, 8), {"jammed": (2.0,), "rest": (2.75,)}, SLOW_ROUNDS),
     *_line("hertz", COARSE, FRICTIONAL_HERTZ, 0.005, (4, 10), {"jammed": (2.2,), "rest": (2.75,)}),
 ]
+# Weights of some per cent of what a wall sphere pushes with; y points upwards, and the wave runs towards -z.
+GRAVITY_POINTS = [
+    Point("lying-smooth", COARSE, 0.05, 2.75, "rest", 40, 80, SMOOTH, ROUNDS, (0.0, -0.01, 0.0)),
+    Point("uphill-smooth", COARSE, 0.05, 2.75, "rest", 40, 80, SMOOTH, ROUNDS, (0.0, 0.0, 0.001)),
+    Point("lying-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.0, -0.01, 0.0)),
+    Point("oblique-frictional", COARSE, 0.02, 2.0, "jammed", 6, 20, FRICTIONAL, ROUNDS, (0.003, -0.006, 0.002)),
+]
 QUICK_POINTS = ("coarse-0.05-2.75-rest", "coarse-0.05-2.85-rest")
 QUICK_FRICTIONAL_POINTS = ("linear-0.02-2.75-rest",)
+QUICK_GRAVITY_POINTS = ("lying-frictional-0.02-2.75-rest",)
 COMPARED = {
     "flow_rate_ratio": "J/Jmax",
     "granular_temperature": "granular temperature",
@@ -101,6 +110,7 @@ COMPARED = {
 # What the slip velocity decides, which LAMMPS reads differently.
 READ_DIFFERENTLY = "rotational_energy"
 COMPARED_WITH_FRICTION = COMPARED | {"rotational_energy": "rotational energy"}
+COMPARED_IN_GRAVITY = COMPARED | {"height": "mean height y"}
 
 
 def observe(point: Point, program: str, seed: int, own: OwnTube) -> dict[str, float]:

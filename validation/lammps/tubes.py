@@ -47,6 +47,8 @@ class Tube:
     strain_rate: float
     law: Law = field(default_factory=lambda: Linear(5.48e-3))
     time_step: float = 0.05
+    # The acceleration of every grain by its weight, m d/t^2 a grain.
+    gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def amplitude(self) -> float:

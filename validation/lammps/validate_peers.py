@@ -18,11 +18,20 @@ import stationary
 from definitions import Program
 from own_tube import OwnTube, PeerError
 from report import Section
+from sections import Samples
+from stationary import Point
 from store import Store
 
 ROOT = Path(__file__).resolve().parents[2]
 TABLES = Path(__file__).resolve().parent / "tables"
-NAMES = (definitions.NAME, collisions.NAME, chaos.NAME, stationary.NAME, stationary.FRICTIONAL_NAME)
+NAMES = (
+    definitions.NAME,
+    collisions.NAME,
+    chaos.NAME,
+    stationary.NAME,
+    stationary.FRICTIONAL_NAME,
+    stationary.GRAVITY_NAME,
+)
 
 
 @dataclass(frozen=True)
@@ -50,6 +59,7 @@ class Work:
             chaos.NAME: self._chaos,
             stationary.NAME: self._stationary,
             stationary.FRICTIONAL_NAME: self._friction,
+            stationary.GRAVITY_NAME: self._gravity,
         }
         return makers[name]()
 
@@ -72,17 +82,23 @@ class Work:
     def _stationary(self) -> Section:
         from figures import draw_stationary
 
-        points = [point for point in stationary.POINTS if not self.quick or point.name in stationary.QUICK_POINTS]
-        found = stationary.measure(points, self.rounds, self.own, self.store)
+        points, found = self._statistics(stationary.POINTS, stationary.QUICK_POINTS)
         self.picture(stationary.NAME, lambda path: draw_stationary(found, path))
         return sections.of_statistics(stationary.NAME, found, points, stationary.COMPARED)
 
     def _friction(self) -> Section:
-        quick = stationary.QUICK_FRICTIONAL_POINTS
-        points = [point for point in stationary.FRICTIONAL_POINTS if not self.quick or point.name in quick]
-        found = stationary.measure(points, self.rounds, self.own, self.store)
+        points, found = self._statistics(stationary.FRICTIONAL_POINTS, stationary.QUICK_FRICTIONAL_POINTS)
         compared, apart = stationary.COMPARED_WITH_FRICTION, stationary.READ_DIFFERENTLY
         return sections.of_statistics(stationary.FRICTIONAL_NAME, found, points, compared, apart)
+
+    def _gravity(self) -> Section:
+        points, found = self._statistics(stationary.GRAVITY_POINTS, stationary.QUICK_GRAVITY_POINTS)
+        return sections.of_statistics(stationary.GRAVITY_NAME, found, points, stationary.COMPARED_IN_GRAVITY)
+
+    def _statistics(self, points: list[Point], quick: tuple[str, ...]) -> tuple[list[Point], Samples]:
+        """The points of this call, and their runs."""
+        points = [point for point in points if not self.quick or point.name in quick]
+        return points, stationary.measure(points, self.rounds, self.own, self.store)
 
 
 def arguments() -> argparse.Namespace:
