@@ -94,10 +94,10 @@ FRICTIONAL_POINTS = [
 ]
 # Weights of some per cent of what a wall sphere pushes with; y points upwards, and the wave runs towards -z.
 GRAVITY_POINTS = [
-    Point("lying-smooth", COARSE, 0.05, 2.75, "rest", 40, 80, SMOOTH, ROUNDS, (0.0, -0.01, 0.0)),
+    Point("lying-smooth", COARSE, 0.05, 2.75, "rest", 40, 80, SMOOTH, ROUNDS, (0.0, -0.002, 0.0)),
     Point("uphill-smooth", COARSE, 0.05, 2.75, "rest", 40, 80, SMOOTH, ROUNDS, (0.0, 0.0, 0.001)),
-    Point("lying-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.0, -0.01, 0.0)),
-    Point("oblique-frictional", COARSE, 0.02, 2.0, "jammed", 6, 20, FRICTIONAL, ROUNDS, (0.003, -0.006, 0.002)),
+    Point("lying-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.0, -0.004, 0.0)),
+    Point("oblique-frictional", COARSE, 0.02, 2.0, "jammed", 6, 20, FRICTIONAL, ROUNDS, (0.002, -0.003, 0.001)),
 ]
 QUICK_POINTS = ("coarse-0.05-2.75-rest", "coarse-0.05-2.85-rest")
 QUICK_FRICTIONAL_POINTS = ("linear-0.02-2.75-rest",)

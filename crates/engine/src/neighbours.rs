@@ -11,7 +11,7 @@ use glam::DVec3;
 pub(crate) use self::cells::PairRule;
 use self::cells::{Cells, Grid, Piece, Rows, Search};
 use crate::fast::machine::Instructions;
-use crate::fast::threads::Threads;
+use crate::fast::threads::{PER_THREAD, Threads};
 
 /// Rows of partners with a value of type `H` beside each pair.
 #[derive(Clone, Debug)]
@@ -29,9 +29,6 @@ pub(crate) struct Neighbours<H> {
     /// Places of the histories that moved when the list was made.
     moved: Vec<u32>,
 }
-
-/// Rows that a thread searches at a time, of so many for each thread.
-const PIECES_PER_THREAD: usize = 4;
 
 impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// A list without pairs, which the first [`Neighbours::rebuild`] fills.
@@ -127,33 +124,28 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         length: f64,
         skin: f64,
     ) -> bool {
-        self.approach(position, turns, length) > skin
+        let unfolded = position.iter().zip(turns);
+        let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * length));
+        self.origin.len() != position.len() || self.drift(0, unfolded).approach() > skin
     }
 
-    /// Whether the list holds all admitted pairs that are now closer than (d_i + d_j)/2 + `skin`.
-    pub(crate) fn covers(&self, position: &[DVec3], turns: &[i32], length: f64, skin: f64) -> bool {
-        self.approach(position, turns, length) + skin <= self.skin
+    /// Whether the list holds all admitted pairs of so many spheres that are now closer than (d_i + d_j)/2 + `skin`;
+    /// `drift` is that of all.
+    pub(crate) fn covers(&self, spheres: usize, drift: Drift, skin: f64) -> bool {
+        self.origin.len() == spheres && drift.approach() + skin <= self.skin
     }
 
-    /// By how much two spheres may have come closer since the list was made \[d\]; infinite for other spheres.
-    fn approach(&self, position: &[DVec3], turns: &[i32], length: f64) -> f64 {
-        if self.origin.len() != position.len() {
-            return f64::INFINITY;
+    /// How far the spheres from number `first` on have gone since the list was made.
+    pub(crate) fn drift(&self, first: usize, unfolded: impl Iterator<Item = DVec3>) -> Drift {
+        let mut drift = Drift::NONE;
+        let origins = self.origin.get(first..).unwrap_or_default();
+        for (place, origin) in unfolded.zip(origins) {
+            let by = place - *origin;
+            drift.lateral_squared = drift.lateral_squared.max(by.x * by.x + by.y * by.y);
+            drift.least = drift.least.min(by.z);
+            drift.largest = drift.largest.max(by.z);
         }
-        if position.is_empty() {
-            return 0.0;
-        }
-        let (mut least, mut largest, mut lateral) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-        for ((position, turns), origin) in position.iter().zip(turns).zip(&self.origin) {
-            let dx = position.x - origin.x;
-            let dy = position.y - origin.y;
-            let dz = position.z + f64::from(*turns) * length - origin.z;
-            lateral = lateral.max(dx * dx + dy * dy);
-            least = least.min(dz);
-            largest = largest.max(dz);
-        }
-        let axial = largest - least;
-        (axial * axial + 4.0 * lateral).sqrt()
+        drift
     }
 
     /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, and those that still remember a
@@ -168,12 +160,15 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         H: Sync,
     {
         let grid = Grid::of(position, rule);
-        self.cells.sort(grid, position, rule.diameter, 0);
+        let (cells, late_cells) = (&mut self.cells, &mut self.late_cells);
         let late = rule.admits_all_below.min(position.len());
-        self.late_cells.sort(grid, position, rule.diameter, late);
+        let mut sorts = [(cells, 0), (late_cells, late)];
+        threads.each(&mut sorts, (), &|_| 0, &|(cells, first), ()| {
+            cells.sort(grid, position, rule.diameter, *first);
+        });
         let pieces = match threads.number() {
             1 => 1,
-            threads => PIECES_PER_THREAD * threads,
+            threads => PER_THREAD * threads,
         };
         let rows = |piece: usize| piece * position.len() / pieces;
         self.pieces.resize_with(pieces, Piece::default);
@@ -218,6 +213,43 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
                 .map(|(p, &turns)| DVec3::new(p.x, p.y, p.z + f64::from(turns) * rule.length)),
         );
         debug_assert_eq!(self.rows(), position.len());
+    }
+}
+
+/// Bounds of displacements.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drift {
+    least: f64,
+    largest: f64,
+    lateral_squared: f64,
+}
+
+impl Default for Drift {
+    fn default() -> Self {
+        Self::NONE
+    }
+}
+
+impl Drift {
+    pub(crate) const NONE: Self = Self {
+        least: f64::INFINITY,
+        largest: f64::NEG_INFINITY,
+        lateral_squared: 0.0,
+    };
+
+    /// Of these spheres and of others.
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            least: self.least.min(other.least),
+            largest: self.largest.max(other.largest),
+            lateral_squared: self.lateral_squared.max(other.lateral_squared),
+        }
+    }
+
+    /// By how much two of the spheres may have come closer \[d\].
+    fn approach(self) -> f64 {
+        let axial = (self.largest - self.least).max(0.0);
+        (axial * axial + 4.0 * self.lateral_squared).sqrt()
     }
 }
 

@@ -1,14 +1,18 @@
 //! The threads that a simulation shares its work out to.
 
-use std::sync::Arc;
+use std::cell::Cell;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
 
-use rayon::ThreadPool;
+use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
 
 use crate::error::EngineError;
 use crate::parameters::Kernel;
 
 /// Moving spheres that a thread must have to itself to pay: some ms of work a step, as measured with two (BENCHMARKS.md).
-const SPHERES_OF_A_THREAD: usize = 20_000;
+const SPHERES_OF_A_THREAD: usize = 15_000;
 
 /// How many threads pay for so many moving spheres where so many processors are free; the reference kernel has one.
 pub fn threads_that_pay(kernel: Kernel, spheres: usize, processors: usize) -> usize {
@@ -23,9 +27,21 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, |number| number.get())
 }
 
+/// Stretches of work for each thread: one that is done early takes what others have not begun.
+pub(crate) const PER_THREAD: usize = 4;
+
+/// Without work a thread stays awake for so long, then it looks again at such intervals: the parts of a step follow each
+/// other within some 10 us, and to wake a thread takes longer.
+const PATIENCE: Duration = Duration::from_micros(50);
+
 /// Threads, where there are to be more than one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Threads(Option<Arc<ThreadPool>>);
+
+thread_local! {
+    /// Whether this thread leads an advance or waits for its parts, and needs not wait for those of another.
+    static TAKES_PART: Cell<bool> = const { Cell::new(false) };
+}
 
 /// Work that can be cut in two: the first so many items, and the rest.
 pub(crate) trait Cut: Sized + Send {
@@ -38,6 +54,12 @@ impl Cut for () {
     }
 }
 
+impl<T: Send> Cut for &mut [T] {
+    fn cut(self, at: usize) -> (Self, Self) {
+        self.split_at_mut(at)
+    }
+}
+
 impl Threads {
     /// So many threads.
     ///
@@ -45,7 +67,7 @@ impl Threads {
     /// [`EngineError::Threads`] where the system gives no more.
     pub(crate) fn new(threads: usize) -> Result<Self, EngineError> {
         let pool = (threads > 1)
-            .then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build())
+            .then(|| ThreadPoolBuilder::new().num_threads(threads).build())
             .transpose()
             .map_err(|error| EngineError::Threads {
                 threads,
@@ -63,27 +85,26 @@ impl Threads {
         cfg!(not(target_family = "wasm")) && self.0.is_some()
     }
 
-    /// Does work that shares itself out.
+    /// Does work that shares itself out, part after part; the threads stay awake for the parts.
     pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        match &self.0 {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
+        let Some(pool) = &self.0 else {
+            return work();
+        };
+        let goes_on = AtomicBool::new(true);
+        pool.scope(|scope| {
+            scope.spawn_broadcast(|_, _| stay_awake(&goes_on));
+            let _end = End {
+                goes_on: &goes_on,
+                took_part: TAKES_PART.replace(true),
+            };
+            work()
+        })
     }
 
-    /// Does two pieces of work, side by side where there are threads.
-    pub(crate) fn join<A: Send, B: Send>(
-        &self,
-        one: impl FnOnce() -> A + Send,
-        other: impl FnOnce() -> B + Send,
-    ) -> (A, B) {
-        match self.several() {
-            true => rayon::join(one, other),
-            false => (one(), other()),
-        }
-    }
-
-    /// Does `work` with each of `stretches` and that part of `all`, `length` items long, which belongs to it.
+    /// Does `work` with each of `stretches` and that part of `all` which belongs to it, `length` items long.
+    ///
+    /// [`PER_THREAD`] stretches after the other belong to one thread, the next to the next and so on, round and round: what
+    /// a thread wrote in one part of a step, it mostly finds near at hand in the next.
     pub(crate) fn each<S: Send, P: Cut>(
         &self,
         stretches: &mut [S],
@@ -91,23 +112,112 @@ impl Threads {
         length: &(impl Fn(&S) -> usize + Sync),
         work: &(impl Fn(&mut S, P) + Sync),
     ) {
-        match stretches {
-            [] => {}
-            [one] => work(one, all),
-            _ => {
-                // One thread goes through them in their order.
-                let middle = if self.several() {
-                    stretches.len() / 2
-                } else {
-                    1
-                };
-                let (left, right) = stretches.split_at_mut(middle);
-                let (of_left, of_right) = all.cut(left.iter().map(length).sum());
-                self.join(
-                    || self.each(left, of_left, length, work),
-                    || self.each(right, of_right, length, work),
-                );
+        self.each_beside(|| (), stretches, all, length, work);
+    }
+
+    /// The same, and beside it something that one thread does.
+    pub(crate) fn each_beside<S: Send, P: Cut>(
+        &self,
+        aside: impl FnOnce() + Send,
+        stretches: &mut [S],
+        mut all: P,
+        length: &(impl Fn(&S) -> usize + Sync),
+        work: &(impl Fn(&mut S, P) + Sync),
+    ) {
+        let Some(pool) = &self.0 else {
+            aside();
+            for stretch in stretches {
+                let (own, rest) = all.cut(length(stretch));
+                all = rest;
+                work(stretch, own);
             }
+            return;
+        };
+        let number = stretches.len();
+        let mut parts = Vec::with_capacity(number);
+        for stretch in stretches {
+            let (own, rest) = all.cut(length(stretch));
+            all = rest;
+            parts.push(Mutex::new(Some((stretch, own))));
+        }
+        let threads = self.number();
+        let begun: Vec<AtomicUsize> = (0..threads).map(|_| AtomicUsize::new(0)).collect();
+        let aside = Mutex::new(Some(aside));
+        let at_work = AtomicUsize::new(0);
+        let take_parts = || {
+            at_work.fetch_add(1, Ordering::Relaxed);
+            let thread = rayon::current_thread_index().unwrap_or(0) % threads;
+            for owner in (thread..threads).chain(0..thread) {
+                loop {
+                    let turn = begun[owner].fetch_add(1, Ordering::Relaxed);
+                    let round = turn / PER_THREAD * threads + owner;
+                    let Some(part) = parts.get(round * PER_THREAD + turn % PER_THREAD) else {
+                        break;
+                    };
+                    let part = part.lock().ok().and_then(|mut part| part.take());
+                    if let Some((stretch, own)) = part {
+                        work(stretch, own);
+                    }
+                }
+            }
+            // Whoever is done first.
+            let aside = aside.try_lock().ok().and_then(|mut aside| aside.take());
+            if let Some(aside) = aside {
+                aside();
+            }
+            at_work.fetch_sub(1, Ordering::Release);
+            // The others are about to end; rayon would soon fall asleep.
+            let since = Instant::now();
+            while at_work.load(Ordering::Acquire) > 0 && since.elapsed() < PATIENCE {
+                core::hint::spin_loop();
+            }
+        };
+        pool.install(|| fork(threads, &take_parts));
+    }
+}
+
+/// Does the same so many times, side by side where threads are free; who comes late finds little left to do.
+fn fork(times: usize, work: &(impl Fn() + Sync)) {
+    match times {
+        0 | 1 => work(),
+        _ => {
+            let half = times / 2;
+            rayon::join(|| fork(times - half, work), || fork(half, work));
         }
     }
 }
+
+/// Waits for parts of an advance, unless this thread does so already.
+fn stay_awake(goes_on: &AtomicBool) {
+    if TAKES_PART.replace(true) {
+        return;
+    }
+    let mut idle = None;
+    while goes_on.load(Ordering::Relaxed) {
+        if rayon::yield_now() == Some(Yield::Executed) {
+            idle = None;
+        } else if idle.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
+            thread::sleep(PATIENCE);
+        } else {
+            core::hint::spin_loop();
+        }
+    }
+    TAKES_PART.set(false);
+}
+
+/// The end of an advance, by a panic too.
+struct End<'a> {
+    goes_on: &'a AtomicBool,
+    /// What [`TAKES_PART`] was before.
+    took_part: bool,
+}
+
+impl Drop for End<'_> {
+    fn drop(&mut self) {
+        self.goes_on.store(false, Ordering::Relaxed);
+        TAKES_PART.set(self.took_part);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -6,17 +6,27 @@ use super::contacts::{Eight, Outcome};
 use super::pairs::Pairs;
 use super::record::Record;
 use super::spheres::ForcesMut;
+use crate::fast::lanes::LANES;
 use crate::fast::machine::{Machine, Work};
 
-/// Forces and torques of the contacts of a stretch, in their order.
+/// What a contact does to its spheres.
+#[derive(Clone, Copy, Debug, Default)]
+struct Answer {
+    first: u32,
+    second: u32,
+    /// Of the first sphere and of the second.
+    arms: [f64; 2],
+    /// On the first sphere.
+    force: Record,
+    torque_per_arm: Record,
+}
+
+/// Answers for the contacts of a stretch, in their order.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Answers {
-    first: Vec<u32>,
-    second: Vec<u32>,
-    /// On the first sphere.
-    force: Vec<Record>,
-    torque_per_arm: Vec<Record>,
-    arms: [Vec<f64>; 2],
+    /// With room for eight more, and what was there before.
+    room: Vec<Answer>,
+    number: usize,
     pub(super) terms: Terms,
     /// The contacts in the order of the stretches of their second spheres, and where each stretch ends.
     by_second: Vec<u32>,
@@ -24,22 +34,28 @@ pub(super) struct Answers {
 }
 
 impl Answers {
-    pub(super) fn clear(&mut self) {
-        self.first.clear();
-        self.second.clear();
-        self.force.clear();
-        self.torque_per_arm.clear();
-        self.arms.iter_mut().for_each(Vec::clear);
+    /// Forgets all, and makes room for so many.
+    pub(super) fn clear(&mut self, contacts: usize) {
+        let room = contacts + LANES;
+        if self.room.len() < room {
+            self.room.resize(room, Answer::default());
+        }
+        self.number = 0;
         self.terms.clear();
+    }
+
+    fn all(&self) -> &[Answer] {
+        &self.room[..self.number]
     }
 
     /// Sorts the contacts by the stretches of their second spheres, `stretch_of` each sphere one of so many.
     pub(super) fn sort(&mut self, stretch_of: &[u16], stretches: usize) {
-        let stretch = |&second: &u32| stretch_of[second as usize] as usize;
+        let stretch = |answer: &Answer| stretch_of[answer.second as usize] as usize;
+        let answers = &self.room[..self.number];
         self.ends.clear();
         self.ends.resize(stretches, 0);
-        for second in &self.second {
-            self.ends[stretch(second)] += 1;
+        for answer in answers {
+            self.ends[stretch(answer)] += 1;
         }
         let mut end = 0;
         for ends in &mut self.ends {
@@ -47,9 +63,9 @@ impl Answers {
             *ends = end;
         }
         // Filling backwards brings each end down to its start.
-        self.by_second.resize(self.second.len(), 0);
-        for (contact, second) in self.second.iter().enumerate().rev() {
-            let place = &mut self.ends[stretch(second)];
+        self.by_second.resize(answers.len(), 0);
+        for (contact, answer) in answers.iter().enumerate().rev() {
+            let place = &mut self.ends[stretch(answer)];
             *place -= 1;
             self.by_second[*place as usize] = contact as u32;
         }
@@ -64,18 +80,17 @@ impl Answers {
 impl<M: Machine> Outcome<M> for Answers {
     #[inline(always)]
     fn take<const ROTATES: bool>(&mut self, eight: Eight<M>) {
-        for lane in 0..eight.contacts {
-            self.first.push(eight.first[lane] as u32);
-            self.second.push(eight.second[lane] as u32);
-            self.force.push(eight.forces[lane].record());
+        let room = &mut self.room[self.number..self.number + LANES];
+        for (lane, answer) in room.iter_mut().enumerate() {
+            answer.first = eight.first[lane] as u32;
+            answer.second = eight.second[lane] as u32;
+            answer.force = eight.forces[lane].record();
             if ROTATES {
-                self.torque_per_arm
-                    .push(eight.torques_per_arm[lane].record());
-                for (all, arms) in self.arms.iter_mut().zip(&eight.arms) {
-                    all.push(arms[lane]);
-                }
+                answer.torque_per_arm = eight.torques_per_arm[lane].record();
+                answer.arms = [eight.arms[0][lane], eight.arms[1][lane]];
             }
         }
+        self.number += eight.contacts;
     }
 
     #[inline(always)]
@@ -101,36 +116,29 @@ impl Work for Gather<'_> {
         let stretch = self.pairs.len() - 1;
         for answers in self.pairs.iter().map(|pairs| &pairs.answers) {
             for &contact in answers.with_second_in(stretch) {
-                let contact = contact as usize;
-                let at = answers.second[contact] as usize - self.forces.first;
+                let answer = &answers.room[contact as usize];
+                let at = answer.second as usize - self.forces.first;
                 let force = &mut self.forces.force[at];
-                *force = (force.quad::<M::Quads>() - answers.force[contact].quad()).record();
-                self.add_torque::<M>(at, answers, contact, 1);
+                *force = (force.quad::<M::Quads>() - answer.force.quad()).record();
+                self.add_torque::<M>(at, answer, answer.arms[1]);
             }
         }
-        let answers = &self.pairs[stretch].answers;
-        for (contact, first) in answers.first.iter().enumerate() {
-            let at = *first as usize - self.forces.first;
+        for answer in self.pairs[stretch].answers.all() {
+            let at = answer.first as usize - self.forces.first;
             let force = &mut self.forces.force[at];
-            *force = (force.quad::<M::Quads>() + answers.force[contact].quad()).record();
-            self.add_torque::<M>(at, answers, contact, 0);
+            *force = (force.quad::<M::Quads>() + answer.force.quad()).record();
+            self.add_torque::<M>(at, answer, answer.arms[0]);
         }
     }
 }
 
 impl Gather<'_> {
     #[inline(always)]
-    fn add_torque<M: Machine>(
-        &mut self,
-        at: usize,
-        answers: &Answers,
-        contact: usize,
-        side: usize,
-    ) {
+    fn add_torque<M: Machine>(&mut self, at: usize, answer: &Answer, arm: f64) {
         if self.rotates {
             let torque = &mut self.forces.torque[at];
-            let more = answers.torque_per_arm[contact].quad::<M::Quads>();
-            *torque = (torque.quad() + more * answers.arms[side][contact]).record();
+            let more = answer.torque_per_arm.quad::<M::Quads>() * arm;
+            *torque = (torque.quad() + more).record();
         }
     }
 }

@@ -47,7 +47,7 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
 
     #[inline(always)]
     fn run<M: Machine>(mut self) {
-        self.pairs.answers.clear();
+        self.pairs.answers.clear(0);
         self.pairs.ended.clear();
         if self.pairs.near.first.is_empty() && self.pairs.touched.is_empty() {
             return;
@@ -64,6 +64,7 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
             }
             None => {
                 let mut answers = core::mem::take(&mut self.pairs.answers);
+                answers.clear(self.pairs.touching.len());
                 self.work_out::<M>(of_grains, &mut answers);
                 self.pairs.answers = answers;
             }

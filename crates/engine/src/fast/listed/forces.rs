@@ -105,48 +105,44 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         let sums = || add_up(instructions, pairs, grains, tally);
         let Some(elastic) = wall.elastic() else {
             let beside_wall = &mut self.beside_wall[..];
-            let forces = || {
-                threads.each(
-                    beside_wall,
-                    forces,
-                    &|stretch| stretch.grains,
-                    &|stretch, mut forces| {
-                        gather(stretch.stretch, &mut forces);
-                        let mut grains = GrainsMut {
-                            moving: spheres,
-                            forces,
-                        };
-                        let (memory, sums) = (&mut stretch.memory, &mut stretch.sums);
-                        wall.add_forces(law, &mut grains, memory, time_step, sums);
-                    },
-                );
-            };
-            threads.join(sums, forces);
+            threads.each_beside(
+                sums,
+                beside_wall,
+                forces,
+                &|stretch| stretch.grains,
+                &|stretch, mut forces| {
+                    gather(stretch.stretch, &mut forces);
+                    let mut grains = GrainsMut {
+                        moving: spheres,
+                        forces,
+                    };
+                    let (memory, sums) = (&mut stretch.memory, &mut stretch.sums);
+                    wall.add_forces(law, &mut grains, memory, time_step, sums);
+                },
+            );
             for stretch in &mut self.beside_wall {
                 stretch.sums.add_to(tally);
             }
             return;
         };
-        let forces = || {
-            threads.each(
-                stretches,
-                forces,
-                &Stretch::length,
-                &|stretch, mut forces| {
-                    gather(stretch.number, &mut forces);
-                    if !stretch.of_grains {
-                        instructions.run(WallForces {
-                            wall: elastic,
-                            rings: &mut stretch.rings,
-                            spheres,
-                            forces,
-                            tally: None,
-                        });
-                    }
-                },
-            );
-        };
-        threads.join(sums, forces);
+        threads.each_beside(
+            sums,
+            stretches,
+            forces,
+            &Stretch::length,
+            &|stretch, mut forces| {
+                gather(stretch.number, &mut forces);
+                if !stretch.of_grains {
+                    instructions.run(WallForces {
+                        wall: elastic,
+                        rings: &mut stretch.rings,
+                        spheres,
+                        forces,
+                        tally: None,
+                    });
+                }
+            },
+        );
         instructions.run(AddUp {
             stretches: rings(stretches).map(|rings| &rings.terms),
             tally,

@@ -33,6 +33,7 @@ use crate::fast::threads::Threads;
 use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
 use crate::ledger::Tally;
+use crate::neighbours::{Drift, Neighbours};
 use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
@@ -111,15 +112,34 @@ impl Scratch {
             });
     }
 
+    /// How far the spheres have gone since a list of them was made.
+    fn drift<H: Copy + Default + PartialEq + Sync>(
+        &mut self,
+        list: &Neighbours<H>,
+        length: f64,
+    ) -> Drift {
+        let position = &self.spheres.position[..];
+        let stretches = &mut self.stretches[..];
+        self.threads.each(stretches, (), &|_| 0, &|stretch, ()| {
+            let places = position[stretch.spheres.clone()].iter();
+            let unfolded = places.map(|place| place.unfolded(length));
+            stretch.drift = list.drift(stretch.spheres.start, unfolded);
+        });
+        let drifts = self.stretches.iter().map(|stretch| stretch.drift);
+        drifts.fold(Drift::NONE, Drift::and)
+    }
+
     /// Writes the histories back to where they came from.
     fn store_histories<T: PackedHistory>(
-        &self,
+        &mut self,
         contacts: &mut Contacts<T::History<f64>>,
         beside_wall: &[BesideWall<T::History<f64>>],
     ) {
-        for pairs in &self.pairs {
-            pairs.store::<T>(&mut contacts.pairs);
-        }
+        let histories = contacts.pairs.histories_mut();
+        let listed = |pairs: &Pairs| pairs.listed;
+        let store = |pairs: &mut Pairs, own: &mut [_]| pairs.store::<T>(own);
+        self.threads
+            .each(&mut self.pairs, histories, &listed, &store);
         if !beside_wall.is_empty() {
             contacts.wall = WallMemory::default();
             for stretch in beside_wall {
@@ -214,9 +234,9 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         let Reference {
             contacts, bodies, ..
         } = &mut self.reference;
-        self.scratch.spheres.store_places(bodies);
-        let (places, turns) = (&bodies.position, &bodies.turns);
-        if !contacts.pairs.covers(places, turns, length, CHOSEN * skin) {
+        let drift = self.scratch.drift(&contacts.pairs, length);
+        if !contacts.pairs.covers(bodies.number(), drift, CHOSEN * skin) {
+            self.scratch.spheres.store_places(bodies);
             self.scratch.store_histories::<T>(contacts, &[]);
             contacts.rebuild(bodies, wall, LISTED * skin, &self.scratch.threads);
             let held = Some(self.reference.contacts.pairs.moved());
@@ -256,8 +276,8 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         // With their velocities: contacts that slide store less.
         let spheres = &self.scratch.spheres;
         spheres.store(&mut bodies, &mut Past::default());
-        let scratch = &*self.scratch;
-        scratch.store_histories::<T>(&mut contacts, &self.beside_wall);
+        self.scratch
+            .store_histories::<T>(&mut contacts, &self.beside_wall);
         contacts.refresh(&bodies, wall, reference.parameters.skin);
         evaluate(reference.law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
     }

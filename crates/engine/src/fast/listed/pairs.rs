@@ -97,8 +97,8 @@ impl Flat {
 pub(super) struct Pairs {
     /// Spheres whose rows these are: all grains, or all of the wall.
     pub(super) rows: Range<usize>,
-    /// Pairs in the rows before them.
-    before: usize,
+    /// How many pairs of the list are in them.
+    pub(super) listed: usize,
     list: Flat,
     /// The pairs that may touch before others are chosen.
     pub(super) near: Flat,
@@ -133,8 +133,8 @@ impl Pairs {
         let rows = &self.rows;
         let of_grains = rows.start < bodies.grains;
         let listed = rows.start.min(list.rows())..rows.end.min(list.rows());
-        self.before = list.pairs_above(listed.start);
-        let pairs = self.before..list.pairs_above(listed.end);
+        let pairs = list.pairs_above(listed.start)..list.pairs_above(listed.end);
+        self.listed = pairs.len();
         self.list.load(list, listed, &bodies.diameter);
         // All others are fresh already.
         for &k in &self.touched {
@@ -166,9 +166,8 @@ impl Pairs {
         self.loaded.clone_from(&self.touched);
     }
 
-    /// Writes the histories back to the rows.
-    pub(super) fn store<T: PackedHistory>(&self, list: &mut Neighbours<T::History<f64>>) {
-        let histories = &mut list.histories_mut()[self.before..];
+    /// Writes the histories back to those of the rows.
+    pub(super) fn store<T: PackedHistory>(&self, histories: &mut [T::History<f64>]) {
         for &k in &self.loaded {
             histories[k as usize] = T::History::<f64>::default();
         }

@@ -26,6 +26,13 @@ impl Record {
         DVec3::new(self.0[0], self.0[1], self.0[2])
     }
 
+    /// The place with the turns round a tube of this length, its fourth number, counted.
+    #[inline(always)]
+    pub(super) fn unfolded(&self, length: f64) -> DVec3 {
+        let [x, y, z, turns] = self.0;
+        DVec3::new(x, y, z + turns * length)
+    }
+
     #[inline(always)]
     pub(super) fn quad<A: Arithmetic<4>>(&self) -> Numbers<A, 4> {
         Numbers::from_array(&self.0)

@@ -5,15 +5,12 @@ use core::ops::Range;
 use super::motion::Moved;
 use super::network::Rings;
 use super::spheres::Spheres;
-use crate::fast::threads::Threads;
-use crate::neighbours::Neighbours;
+use crate::fast::threads::{PER_THREAD, Threads};
+use crate::neighbours::{Drift, Neighbours};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
 use crate::wall::sums::Waiting;
 
-/// Stretches of grains for each thread, and as many of the wall: threads that are done early take what others have not
-/// begun.
-const PER_THREAD: usize = 4;
 /// The work that a grain makes besides its pairs, in listed pairs.
 const PAIRS_OF_A_GRAIN: usize = 16;
 
@@ -25,6 +22,8 @@ pub(super) struct Stretch {
     pub(super) spheres: Range<usize>,
     pub(super) moved: Moved,
     pub(super) rings: Rings,
+    /// Since the list was made.
+    pub(super) drift: Drift,
 }
 
 impl Stretch {
@@ -53,6 +52,7 @@ pub(super) fn share_out<H: Copy + Default + PartialEq>(
 ) {
     let most = match threads.number() {
         1 => 1,
+        // As many of the wall.
         threads => PER_THREAD * threads,
     };
     let grains = spheres.grains;

@@ -1,0 +1,93 @@
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use super::*;
+
+/// Each of so many stretches, three items long, writes its number on its own.
+fn written(threads: &Threads, stretches: usize) -> Vec<usize> {
+    let mut items = vec![usize::MAX; 3 * stretches];
+    let mut numbers: Vec<usize> = (0..stretches).collect();
+    threads.each(&mut numbers, &mut items[..], &|_| 3, &|number, own| {
+        own.fill(*number);
+    });
+    items
+}
+
+fn expected(stretches: usize) -> Vec<usize> {
+    (0..3 * stretches).map(|item| item / 3).collect()
+}
+
+#[test]
+fn every_stretch_is_done_once_by_any_number_of_threads() {
+    for number in [1, 2, 3, 5] {
+        let threads = Threads::new(number).expect("threads");
+        assert_eq!(threads.number(), number);
+        for stretches in [0, 1, 2, 7, 64] {
+            threads.install(|| {
+                for _ in 0..20 {
+                    assert_eq!(written(&threads, stretches), expected(stretches));
+                }
+            });
+        }
+    }
+}
+
+#[test]
+fn threads_that_sleep_are_waked() {
+    let threads = Threads::new(3).expect("threads");
+    threads.install(|| {
+        for _ in 0..3 {
+            assert_eq!(written(&threads, 12), expected(12));
+            thread::sleep(Duration::from_millis(5));
+        }
+    });
+}
+
+#[test]
+fn what_stands_beside_is_done_once() {
+    let threads = Threads::new(2).expect("threads");
+    let done = AtomicUsize::new(0);
+    for _ in 0..50 {
+        let aside = || {
+            done.fetch_add(1, Ordering::Relaxed);
+        };
+        threads.each_beside(aside, &mut [(); 3], (), &|()| 0, &|(), ()| ());
+    }
+    assert_eq!(done.into_inner(), 50);
+}
+
+#[test]
+fn work_within_work_and_by_two_at_once_is_done_too() {
+    let threads = Threads::new(2).expect("threads");
+    let mut inner = [(); 6].map(|()| Vec::new());
+    threads.each(&mut inner, (), &|_| 0, &|inner, ()| {
+        *inner = written(&threads, 5);
+    });
+    assert!(inner.iter().all(|inner| *inner == expected(5)));
+    thread::scope(|scope| {
+        for _ in 0..3 {
+            scope.spawn(|| {
+                threads.install(|| {
+                    (0..50).for_each(|_| assert_eq!(written(&threads, 9), expected(9)));
+                });
+            });
+        }
+    });
+}
+
+#[test]
+fn a_panic_of_any_thread_comes_to_the_caller() {
+    let threads = Threads::new(3).expect("threads");
+    let all_panic = || {
+        threads.install(|| {
+            threads.each(&mut [(); 12], (), &|()| 0, &|(), ()| {
+                thread::sleep(Duration::from_millis(1));
+                panic!("as it should");
+            });
+        });
+    };
+    assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(all_panic)).is_err());
+    // They serve on.
+    assert_eq!(written(&threads, 12), expected(12));
+}
