@@ -92,12 +92,12 @@ FRICTIONAL_POINTS = [
     *_line("linear", COARSE, FRICTIONAL, 0.002, (3, 8), {"jammed": (2.0,), "rest": (2.75,)}, SLOW_ROUNDS),
     *_line("hertz", COARSE, FRICTIONAL_HERTZ, 0.005, (4, 10), {"jammed": (2.2,), "rest": (2.75,)}),
 ]
-# Weights of some per cent of what a wall sphere pushes with; y points upwards, and the wave runs towards -z.
+# y points upwards, and the wave runs towards -z. Tubes that grains leave would tell of how long these are followed.
 GRAVITY_POINTS = [
-    Point("lying-smooth", COARSE, 0.05, 2.75, "rest", 40, 80, SMOOTH, ROUNDS, (0.0, -0.002, 0.0)),
-    Point("uphill-smooth", COARSE, 0.05, 2.75, "rest", 40, 80, SMOOTH, ROUNDS, (0.0, 0.0, 0.001)),
+    Point("lying-smooth", FINE, 0.1, 2.6, "rest", 40, 100, SMOOTH, ROUNDS, (0.0, -0.01, 0.0)),
+    Point("uphill-smooth", FINE, 0.1, 2.6, "rest", 40, 100, SMOOTH, ROUNDS, (0.0, 0.0, 0.002)),
     Point("lying-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.0, -0.004, 0.0)),
-    Point("oblique-frictional", COARSE, 0.02, 2.0, "jammed", 6, 20, FRICTIONAL, ROUNDS, (0.002, -0.003, 0.001)),
+    Point("oblique-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.002, -0.003, 0.001)),
 ]
 QUICK_POINTS = ("coarse-0.05-2.75-rest", "coarse-0.05-2.85-rest")
 QUICK_FRICTIONAL_POINTS = ("linear-0.02-2.75-rest",)

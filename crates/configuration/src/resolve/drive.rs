@@ -102,13 +102,19 @@ fn check_table(drive: &Drive, context: &mut Context<'_>) -> Option<()> {
         );
     }
     if RadiusTable::new(&drive.phases, &drive.radii).is_none() {
-        let (phases, radii) = (drive.phases.len(), drive.radii.len());
+        let message = match (drive.phases.len(), drive.radii.len()) {
+            (0, 0) => "the table of the wave is missing".into(),
+            (phases, radii) if phases != radii => {
+                format!("{phases} phases and {radii} radii: each phase needs a radius")
+            }
+            (points, _) => format!("these {points} points are no curve over a wavelength"),
+        };
         return context.refuse(
             kind,
             &["drive.phases", "drive.radii", "drive.waveform"],
-            format!("{phases} phases and {radii} radii that are no curve over a wavelength"),
+            message,
             format!(
-                "drive.table, or drive.phases and drive.radii: 3 to {MOST_POINTS} phases, ascending from 0 to below 1, and a radius each, not all alike"
+                "give drive.table, or drive.phases and drive.radii: 3 to {MOST_POINTS} phases, ascending from 0 to below 1, and a radius for each, not all alike"
             ),
         );
     }

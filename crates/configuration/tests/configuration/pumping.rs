@@ -233,7 +233,11 @@ fn a_wave_from_a_table() {
     assert_ne!(other.physics_hash(), typed.physics_hash());
     for (settings, key, message) in [
         (vec![waveform, &name], "drive.table", "No such file"),
-        (vec![waveform], "drive.phases", "0 phases and 0 radii"),
+        (
+            vec![waveform],
+            "drive.phases",
+            "the table of the wave is missing",
+        ),
         (
             vec![waveform, lists[0]],
             "drive.phases",
@@ -246,7 +250,7 @@ fn a_wave_from_a_table() {
                 "drive.radii=[1, 2, 1]",
             ],
             "drive.phases",
-            "no curve",
+            "3 points are no curve",
         ),
         (vec![lists[0]], "drive.phases", "belongs to drive.waveform"),
     ] {
