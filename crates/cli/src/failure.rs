@@ -223,6 +223,10 @@ fn of_run(error: &RunError) -> Advice {
         RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }) => {
             wrong(FEWER_GRAINS)
         }
+        RunError::Engine(EngineError::NotSettled { .. }) => failed(
+            "close the throat (drive.width), lower what pushes the grains along the tube (drive.body_force, the \
+             back_pressure of a design, body.gravity), or begin with initial.state = \"rest\"",
+        ),
         RunError::NoMemory { .. } => wrong(
             "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)",
         ),

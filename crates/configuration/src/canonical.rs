@@ -7,7 +7,8 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 use toml::Value;
 
-use crate::configuration::{Body, Configuration, Control};
+use crate::configuration::{Configuration, Control};
+use crate::grains::Body;
 use crate::keys::ALTERNATIVES;
 use crate::schedule::{Schedule, ScheduleForm};
 

@@ -8,7 +8,8 @@ use peristalsis_physics::contact::{CundallStrack, Normal};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::configuration::{Body, Drive, Grains, Initial, Observe, Run, Tube, Wall};
+use crate::configuration::{Drive, Initial, Observe, Run, Tube, Wall};
+use crate::grains::{Body, Grains};
 
 /// Keys that give the number of grains.
 pub(crate) const NUMBERS: &[&str] = &[

@@ -29,6 +29,7 @@ mod configuration;
 mod contract;
 pub mod document;
 mod error;
+mod grains;
 mod keys;
 mod layers;
 mod limits;
@@ -43,11 +44,10 @@ mod suggestion;
 mod units;
 mod waveform;
 
-pub use configuration::{
-    Body, Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall,
-};
+pub use configuration::{Configuration, Control, Drive, Initial, Observe, Run, Tube, Wall};
 pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
+pub use grains::{Body, Grains};
 pub use layers::{file_with_overrides, join};
 pub use materials::{MATERIALS, Material, material};
 pub use peristalsis_physics::contact::{

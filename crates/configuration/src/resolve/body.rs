@@ -1,8 +1,8 @@
 //! What acts on every grain: gravity in our units.
 
 use super::{Context, plain};
-use crate::configuration::Body;
 use crate::error::ProblemKind;
+use crate::grains::Body;
 use crate::keys::Keys;
 use crate::units::Units;
 

@@ -3,8 +3,9 @@
 use peristalsis_physics::contact::{ContactModel, Impact, Normal, NormalLaw};
 
 use super::{Context, schema_of};
-use crate::configuration::{Drive, Grains};
+use crate::configuration::Drive;
 use crate::error::ProblemKind;
+use crate::grains::Grains;
 use crate::keys::{DAMPINGS, Keys};
 
 const RESTITUTION: &str = "contact.restitution";

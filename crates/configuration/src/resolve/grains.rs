@@ -3,8 +3,9 @@
 use std::f64::consts::PI;
 
 use super::{Context, plain};
-use crate::configuration::{Grains, Tube};
+use crate::configuration::Tube;
 use crate::error::ProblemKind;
+use crate::grains::Grains;
 use crate::keys::{GrainsKeys, NUMBERS};
 use crate::limits;
 

@@ -1,8 +1,9 @@
 //! Time: the step that divides the time between samples, and the number of both.
 
 use super::Context;
-use crate::configuration::{Drive, Grains, Observe, Run};
+use crate::configuration::{Drive, Observe, Run};
 use crate::error::ProblemKind;
+use crate::grains::Grains;
 use crate::keys::{LENGTHS, RATES};
 use crate::limits;
 

@@ -181,10 +181,7 @@ fn outside(
         })
         .collect();
     if configuration.drive.waveform != WaveformName::Sine {
-        let name = configuration.drive.waveform;
-        outside.push(format!(
-            "waveform {name:?}: published tubes like it have sine waves, of which the expectation is"
-        ));
+        outside.push("drive.waveform: what is expected is for sine waves".to_owned());
     }
     if !configuration.drive.schedules.is_empty() {
         outside.push("drive.schedule: published tubes like it have a constant drive".to_owned());
@@ -198,7 +195,7 @@ fn outside(
         ));
     }
     if outside.is_empty() && expected.is_empty() {
-        outside.push("each group is within the published range, but no published tube has all of them like this one".to_owned());
+        outside.push("each group is within the published range or near it, but no published tube has all of them like this one".to_owned());
     }
     outside
 }
