@@ -373,7 +373,7 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     await closeOther();
     await page.click("[data-chapter=friction]");
     await until(page, () => document.getElementById("title").textContent === "frictional" && window.viewer.measured.playing);
-    assert.equal(await page.inputValue("#speed"), "0.3");
+    await until(page, () => document.getElementById("speed").value === "0.3");
     await page.click("[data-chapter=begins]");
     await until(page, () => !document.getElementById("space-time-figure").hidden && window.viewer.measured.clock > 5);
     assert(await page.isVisible("#published img"));
