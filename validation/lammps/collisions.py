@@ -8,7 +8,7 @@ from functools import partial
 import lammps_tube
 import numpy as np
 import two_grains
-from laws import Friction, Hertz, Law, Linear
+from laws import Friction, Hertz, Law, Linear, Rolling
 from own_tube import OwnTube
 from store import Store
 from tubes import COARSE, EMPTY, Array, Grains, Tube
@@ -38,6 +38,11 @@ class Case:
     @property
     def with_wall(self) -> bool:
         return self.tube.lattice is not EMPTY
+
+    @property
+    def has_reference(self) -> bool:
+        """Whether the method of order 4 knows what comes of it."""
+        return not self.with_wall and self.tube.law.is_plain
 
     @property
     def steps(self) -> list[float]:
@@ -89,6 +94,10 @@ CASES = [
     _pair("stick-large", "friction, sticks, overlap 0.06", Linear(0.0, STICKY), 0.5, 0.1, 0.1),
     _pair("slip-damped", "friction, slides, tiny overlap, eta 0.1", Linear(0.1, SLIPPERY), 0.5, TINY, TINY),
     _pair("hertz-friction", "Hertz with friction, B 0.15, k_t 1, mu 0.5", Hertz(0.15, Friction(1.0, 0.5)), 0.5, 0.02, 0.05),
+    _pair("rolling", "friction and rolling resistance, tiny overlap", Linear(0.0, STICKY, Rolling(0.2, 0.05)), 0.5, TINY, TINY),
+    _pair("pull", "Hertz with a constant pull (DMT), oblique", Hertz(0.0, cohesion_force=1e-3), 0.5, 0.05, duration=24.0),
+    # So slow that they never part, for LAMMPS breaks the contact at the pull-off force already.
+    _pair("jkr", "JKR, oblique, sticks", Hertz(0.0, surface_energy=1e-3), 0.5, 0.001, duration=24.0),
 ]
 QUICK_LEAST_STEP, QUICK_TOLERANCE = 1e-4, 5e-5
 
@@ -111,7 +120,7 @@ def collide(case: Case, least_step: float, own: OwnTube) -> Found:
         theirs = lammps_tube.run(tube, case.grains, 1, number, case.with_wall).frames[1, :, 3:]
         found["ours"][repr(step)] = ours.tolist()
         found["theirs"][repr(step)] = theirs.tolist()
-    if not case.with_wall:
+    if case.has_reference:
         quick = least_step >= QUICK_LEAST_STEP
         found[REFERENCE] = {program: case.reference(reading, quick).tolist() for program, reading in READINGS.items()}
     return found
@@ -155,7 +164,7 @@ class Outcome:
             return float(np.max(np.abs(some - others)) / case.speed)
 
         outcome = cls(case, float(step), _relative(ours) / _relative(case.grains.values[:, 3:]), apart(ours, theirs))
-        if case.with_wall:
+        if not case.has_reference:
             return outcome
         as_ours, as_theirs = (np.array(found[REFERENCE][program]) for program in READINGS)
         return replace(

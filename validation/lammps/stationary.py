@@ -9,7 +9,7 @@ from functools import partial
 
 import lammps_tube
 import numpy as np
-from laws import Friction, Hertz, Law, Linear
+from laws import Friction, Hertz, Law, Linear, Rolling
 from observables import Observed
 from own_tube import OwnTube
 from start_files import Lattice
@@ -17,12 +17,16 @@ from store import Store
 from tubes import COARSE, FINE, Course, Tube
 
 NAME, FRICTIONAL_NAME, GRAVITY_NAME = "stationary", "friction", "gravity"
+ROLLING_NAME, COHESION_NAME = "rolling", "cohesion"
 SAMPLES_PER_PERIOD = 20
 OURS, THEIRS = "peristalsis", "LAMMPS"
 # No packing is used twice: the programs' samples are independent.
 FIRST_SEED = {OURS: 1, THEIRS: 1001}
 SMOOTH = Linear(5.48e-3)
 FRICTIONAL = Linear(0.0, Friction(0.3, 0.5))
+ROLLING = Linear(0.0, Friction(0.3, 0.5), Rolling(0.3, 0.1))
+# A constant pull, the cohesion that both programs have alike to the end of a contact.
+COHESIVE = Hertz(0.0, cohesion_force=1e-3)
 FRICTIONAL_HERTZ = Hertz(0.15, Friction(1.0, 0.5))
 VOLUME_FRACTION = 0.15
 # A round is one run of LAMMPS and four of ours at each point. Slow ones take two rounds, some minutes each.
@@ -98,6 +102,14 @@ GRAVITY_POINTS = [
     Point("uphill-smooth", FINE, 0.1, 2.6, "rest", 40, 100, SMOOTH, ROUNDS, (0.0, 0.0, 0.002)),
     Point("lying-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.0, -0.004, 0.0)),
     Point("oblique-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.002, -0.003, 0.001)),
+]
+ROLLING_POINTS = [
+    Point("rolling", COARSE, 0.02, 2.75, "rest", 6, 20, ROLLING, ROUNDS),
+    Point("rolling", COARSE, 0.05, 2.6, "jammed", 6, 20, ROLLING, ROUNDS),
+]
+COHESION_POINTS = [
+    Point("pull", COARSE, 0.02, 2.75, "rest", 6, 20, COHESIVE, ROUNDS),
+    Point("pull", COARSE, 0.05, 2.6, "jammed", 6, 20, COHESIVE, ROUNDS),
 ]
 QUICK_POINTS = ("coarse-0.05-2.75-rest", "coarse-0.05-2.85-rest")
 QUICK_FRICTIONAL_POINTS = ("linear-0.02-2.75-rest",)

@@ -31,6 +31,8 @@ NAMES = (
     stationary.NAME,
     stationary.FRICTIONAL_NAME,
     stationary.GRAVITY_NAME,
+    stationary.ROLLING_NAME,
+    stationary.COHESION_NAME,
 )
 
 
@@ -60,6 +62,8 @@ class Work:
             stationary.NAME: self._stationary,
             stationary.FRICTIONAL_NAME: self._friction,
             stationary.GRAVITY_NAME: self._gravity,
+            stationary.ROLLING_NAME: self._rolling,
+            stationary.COHESION_NAME: self._cohesion,
         }
         return makers[name]()
 
@@ -94,6 +98,15 @@ class Work:
     def _gravity(self) -> Section:
         points, found = self._statistics(stationary.GRAVITY_POINTS, stationary.QUICK_GRAVITY_POINTS)
         return sections.of_statistics(stationary.GRAVITY_NAME, found, points, stationary.COMPARED_IN_GRAVITY)
+
+    def _rolling(self) -> Section:
+        points, found = self._statistics(stationary.ROLLING_POINTS, (stationary.ROLLING_POINTS[0].name,))
+        compared, apart = stationary.COMPARED_WITH_FRICTION, stationary.READ_DIFFERENTLY
+        return sections.of_statistics(stationary.ROLLING_NAME, found, points, compared, apart)
+
+    def _cohesion(self) -> Section:
+        points, found = self._statistics(stationary.COHESION_POINTS, (stationary.COHESION_POINTS[0].name,))
+        return sections.of_statistics(stationary.COHESION_NAME, found, points, stationary.COMPARED)
 
     def _statistics(self, points: list[Point], quick: tuple[str, ...]) -> tuple[list[Point], Samples]:
         """The points of this call, and their runs."""

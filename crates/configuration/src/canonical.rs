@@ -9,7 +9,7 @@ use toml::Value;
 
 use crate::configuration::{Configuration, Control};
 use crate::grains::Body;
-use crate::keys::ALTERNATIVES;
+use crate::keys::{ALTERNATIVES, RINGS};
 use crate::schedule::{Schedule, ScheduleForm};
 
 /// Tables and keys that do not determine the trajectory: how long it is followed, what is measured, in which units it is
@@ -94,7 +94,7 @@ impl Configuration {
 
     /// Every key with its resolved value, in the order of the types that hold them.
     ///
-    /// What is not there is not listed: neither friction, units, gravity or a body force that the run does without, nor a staggered
+    /// What is not there is not listed: neither friction, units, an inlet, gravity or a body force that the run does without, nor a staggered
     /// arrangement, nor an initial velocity that the initial state has of itself, and of alternatives only the first.
     fn entries(&self) -> Vec<Entry> {
         let mut tables =
@@ -127,6 +127,7 @@ impl Configuration {
             "drive.body_force" => self.drive.body_force != 0.0,
             "tube.arrangement" => self.tube.arrangement != Arrangement::default(),
             "tube.arrangement_seed" => self.tube.arrangement.is_drawn(),
+            path if RINGS.contains(&path) => self.tube.arrangement != Arrangement::Smooth,
             "initial.axial_velocity" => self.initial.axial_velocity.to_bits() != natural.to_bits(),
             path => !absent.contains(&path),
         });

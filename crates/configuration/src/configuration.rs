@@ -6,6 +6,7 @@
 use std::f64::consts::PI;
 
 use peristalsis_physics::contact::ContactModel;
+use peristalsis_physics::ends::{Ends, Inlet};
 use peristalsis_physics::method::{InitialState, Integrator, Kernel};
 use peristalsis_physics::wall::{
     Arrangement, Contraction, DriveAngle, ElasticNetwork, RadiusTable, SegmentDrive, Segments,
@@ -36,6 +37,9 @@ pub struct Configuration {
     pub drive: Drive,
     /// The wall.
     pub wall: Wall,
+    /// The inlet of an open tube; `None` of a periodic one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inlet: Option<Inlet>,
     /// The grains at t = 0.
     pub initial: Initial,
     /// Time: how long, in which steps.
@@ -47,10 +51,11 @@ pub struct Configuration {
     pub units: Option<Units>,
 }
 
-/// The tube: wall spheres in rings or at random places, periodic along its axis.
+/// The tube: wall spheres in rings or at random places. It is periodic along its axis, or its ends are open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tube {
-    /// Mean radius a of the tube, to the centres of the wall spheres.
+    /// Mean radius a of the tube, to the centres of the wall spheres. The wall's surface, also of a smooth wall, lies half of
+    /// wall.sphere_diameter inside it.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub radius: f64,
     /// Wavelength lambda.
@@ -59,6 +64,9 @@ pub struct Tube {
     /// Number of waves in the tube; its length is L = waves * wavelength.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub waves: u32,
+    /// What the ends of the tube are.
+    #[serde(default, skip_serializing_if = "Ends::is_periodic")]
+    pub ends: Ends,
     /// How the wall spheres stand.
     #[serde(default)]
     pub arrangement: Arrangement,
@@ -74,12 +82,12 @@ pub struct Tube {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-unit" = "d", "items" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
     pub places: Vec<f64>,
-    /// Wall spheres in a ring.
+    /// Wall spheres in a ring; 0 in a smooth wall, where it is not given.
     #[schemars(extend("x-unit" = "1", "minimum" = 3, "maximum" = 1_000_000))]
     pub spheres_per_ring: u32,
     /// Rings in a wavelength. Staggered rings under strain control need an even number; under stress control an odd number
     /// needs an even number of waves. Random and disordered walls have as many spheres as so many rings would have; a wall
-    /// from a file does not use it.
+    /// from a file does not use it. 0 in a smooth wall, where it is not given.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub rings_per_wave: u32,
 }
@@ -99,8 +107,10 @@ impl Tube {
 
     /// Wall spheres in the whole tube.
     pub fn wall_spheres(&self) -> u64 {
-        if self.arrangement == Arrangement::File {
-            return self.places.len() as u64;
+        match self.arrangement {
+            Arrangement::File => return self.places.len() as u64,
+            Arrangement::Smooth => return 0,
+            _ => {}
         }
         u64::from(self.spheres_per_ring) * u64::from(self.rings_per_wave) * u64::from(self.waves)
     }
@@ -234,8 +244,9 @@ pub enum Control {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Wall {
-    /// Diameter of a wall sphere.
-    #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
+    /// Diameter d_w of a wall sphere. The surface of the wall lies d_w/2 inside the tube's radius, so that the clear opening
+    /// of the bottleneck is w - d_w. Under arrangement = "smooth" it is the same offset, and may be 0.
+    #[schemars(extend("x-unit" = "d", "minimum" = 0, "maximum" = 1e6))]
     pub sphere_diameter: f64,
     /// What a wall under stress control has besides; `None` under strain control.
     #[serde(flatten)]

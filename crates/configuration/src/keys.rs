@@ -4,7 +4,8 @@
 //! enforces it. m, d and t are the units of mass, length and time; "1" marks a pure number. The default "null" says that
 //! what holds for a missing key follows from other keys.
 
-use peristalsis_physics::contact::{CundallStrack, Normal};
+use peristalsis_physics::contact::{Cohesion, CundallStrack, Normal, RollingResistance};
+use peristalsis_physics::ends::Inlet;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +36,9 @@ pub(crate) const DAMPINGS: [&[&str]; 2] = [
     &["contact.dissipation_time", "contact.restitution"],
 ];
 
+/// The lattice of a wall of spheres, which a smooth wall does without.
+pub(crate) const RINGS: [&str; 2] = ["tube.spheres_per_ring", "tube.rings_per_wave"];
+
 /// Where the wall spheres of arrangement = "file" come from; at most one is given.
 const SPHERES: &[&str] = &["tube.file", "tube.places"];
 
@@ -43,12 +47,39 @@ const POINTS: &[&str] = &["drive.table", "drive.phases"];
 /// Keys that give gravity, of which at most one is given.
 const GRAVITIES: &[&str] = &["body.gravity", "units.acceleration"];
 
+/// Keys of forms of sizes, of which at most one is given.
+const SIZES: [&[&str]; 2] = [
+    &["grains.large_fraction", "grains.large_volume_fraction"],
+    &["grains.file", "grains.diameters"],
+];
+
+/// Keys that give cohesion of either kind, of which at most one is given.
+const COHESIONS: [&[&str]; 2] = [
+    &["contact.cohesion_force", "units.cohesion_force"],
+    &["contact.surface_energy", "units.surface_energy"],
+];
+
+/// Keys that give the rate of the inlet, of which at most one is given.
+const FEEDS: &[&str] = &["inlet.feed_rate", "units.feed_rate"];
+
+/// Keys that only an open tube has.
+pub(crate) const OPEN: [&str; 6] = [
+    "inlet.head",
+    "inlet.length",
+    "inlet.feed_rate",
+    "inlet.velocity",
+    "inlet.waiting",
+    "units.feed_rate",
+];
+
 /// All groups of keys that exclude one another.
 pub(crate) fn exclusive_groups() -> impl Iterator<Item = &'static [&'static str]> {
     ALTERNATIVES
         .into_iter()
         .chain(DAMPINGS)
-        .chain([SPHERES, POINTS, GRAVITIES])
+        .chain([SPHERES, POINTS, GRAVITIES, FEEDS])
+        .chain(COHESIONS)
+        .chain(SIZES)
 }
 
 /// Configuration of one simulation of grains in a peristaltic tube.
@@ -63,6 +94,8 @@ pub(crate) struct Keys {
     pub(crate) drive: DriveKeys,
     #[serde(default)]
     pub(crate) wall: Wall,
+    #[serde(default)]
+    pub(crate) inlet: Inlet,
     #[serde(default)]
     pub(crate) initial: Initial,
     #[serde(default)]
@@ -97,6 +130,15 @@ pub(crate) struct GrainsKeys {
     /// Number density n = N d*^3/(pi a^2 L), d* the largest grain diameter; N is rounded to the nearest whole number.
     #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 10))]
     pub(crate) number_density: Option<f64>,
+    /// Part of the grains' volume that those of diameter_max have, instead of large_fraction.
+    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1))]
+    pub(crate) large_volume_fraction: Option<f64>,
+    /// Table of the diameters under sizes = "table", instead of diameters and fractions: CSV with the columns diameter and
+    /// fraction (by number), one size per line. Its path is relative to the configuration file, with --set to where the
+    /// program runs.
+    #[serde(rename = "file")]
+    #[schemars(extend("default" = null))]
+    pub(crate) _file: Option<String>,
 }
 
 /// The contact of two spheres, grain or wall.
@@ -106,6 +148,10 @@ pub(crate) struct ContactKeys {
     pub(crate) normal: Normal,
     #[serde(flatten)]
     pub(crate) friction: CundallStrack,
+    #[serde(flatten)]
+    pub(crate) rolling: RollingResistance,
+    #[serde(flatten)]
+    pub(crate) cohesion: Cohesion,
     /// Restitution e of two grains of the mean diameter that meet head-on. Give it instead of normal_damping (linear law) or
     /// dissipation_time (Hertz law), which then follow. Linear law: e = exp(-pi beta/sqrt(k/m_ij - beta^2)), beta =
     /// eta/(2 m_ij), at any speed. Hertz law: by integration of an impact at restitution_speed; e falls with the speed.
@@ -257,4 +303,14 @@ pub(crate) struct UnitsKeys {
     /// Gravity [x, y, z] in SI, instead of body.gravity: [0, -9.81, 0] is a horizontal tube on Earth.
     #[schemars(extend("x-unit" = "m s^-2", "items" = {"type": "number", "minimum": -1e9, "maximum": 1e9}))]
     pub(crate) acceleration: Option<[f64; 3]>,
+    /// The force that parts two grains of diameter 1 under linear cohesion, instead of contact.cohesion_force.
+    #[schemars(extend("x-unit" = "N", "minimum" = 0, "maximum" = 1e9))]
+    pub(crate) cohesion_force: Option<f64>,
+    /// Surface energy gamma of JKR cohesion, half the work of adhesion, instead of contact.surface_energy. Dry glass has some
+    /// 0.05; grains that are computed softer than they are cling more.
+    #[schemars(extend("x-unit" = "J m^-2", "minimum" = 0, "maximum" = 1e6))]
+    pub(crate) surface_energy: Option<f64>,
+    /// Mass that the inlet of an open tube takes in an hour, instead of inlet.feed_rate.
+    #[schemars(extend("x-unit" = "kg h^-1", "minimum" = 0, "maximum" = 1e12))]
+    pub(crate) feed_rate: Option<f64>,
 }

@@ -8,11 +8,28 @@ use peristalsis_physics::wall::{ElasticNetwork, SegmentDrive};
 
 use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
-use crate::keys::{DAMPINGS, exclusive_groups};
+use crate::keys::{DAMPINGS, OPEN, RINGS, exclusive_groups};
 use crate::materials::{self, MATERIAL};
 use crate::schema::{self, Choice};
 use crate::source::SourceFile;
 use crate::units;
+
+/// The key that says how diameters are distributed, and the keys of each of its values.
+pub(crate) const SIZES: &str = "grains.sizes";
+pub(crate) const KEYS_OF_SIZES: &[(&str, &[&str])] = &[
+    (
+        "lognormal",
+        &["grains.diameter_median", "grains.diameter_spread"],
+    ),
+    (
+        "two",
+        &["grains.large_fraction", "grains.large_volume_fraction"],
+    ),
+    (
+        "table",
+        &["grains.file", "grains.diameters", "grains.fractions"],
+    ),
+];
 
 /// A key whose value decides which other keys have a meaning.
 #[derive(Default)]
@@ -62,7 +79,24 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
     for key in ["tube.file", "tube.angles", "tube.places"] {
         arrangement.owns("file", key);
     }
+    for key in RINGS {
+        for of_spheres in ["staggered", "aligned", "random", "disordered", "file"] {
+            arrangement.owns(of_spheres, key);
+        }
+    }
     switches.push(arrangement);
+    let mut sizes = Switch::new(SIZES, &[]);
+    for (form, keys) in KEYS_OF_SIZES {
+        for key in *keys {
+            sizes.owns(form, *key);
+        }
+    }
+    switches.push(sizes);
+    let mut ends = Switch::new("tube.ends", &[]);
+    for key in OPEN {
+        ends.owns("open", key);
+    }
+    switches.push(ends);
     let mut waveform = Switch::new("drive.waveform", &[]);
     let segments = schema::of::<SegmentDrive>();
     for (name, _) in segments["properties"].as_object().into_iter().flatten() {
@@ -116,6 +150,11 @@ pub(crate) fn elasticity_of(law: &str) -> Option<Elasticity> {
 fn unit_of_elasticity(law: &str) -> String {
     let elasticity = elasticity_of(law).expect("every parameter of a law has a default");
     units::key(elasticity).to_owned()
+}
+
+/// Whether the wall of a table is smooth, so that it has no rings.
+pub(crate) fn is_smooth(table: &Table) -> bool {
+    document::text(table, "tube.arrangement") == Some("smooth")
 }
 
 /// Whether a key has a meaning where the switches stand as they do in a table; a switch that is not set has no value.

@@ -49,11 +49,15 @@ pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
 pub use grains::{Body, Grains};
 pub use layers::{file_with_overrides, join};
+pub use limits::MOST_GRAINS;
 pub use materials::{MATERIALS, Material, material};
 pub use peristalsis_physics::contact::{
-    ContactModel, CundallStrack, DissipationForm, Elasticity, Normal, Sliding,
+    Cohesion, ContactModel, CundallStrack, DissipationForm, Elasticity, Normal, RollingResistance,
+    Sliding,
 };
+pub use peristalsis_physics::ends::{Ends, Inlet};
 pub use peristalsis_physics::method::{InitialState, Integrator, Kernel};
+pub use peristalsis_physics::sizes::{SizeForm, Sizes};
 pub use peristalsis_physics::wall::{
     DriveAngle, ElasticNetwork, NetForce, SegmentDrive, Tethers, WaveDirection,
 };

@@ -1,7 +1,7 @@
 //! The largest sizes that are accepted.
 
 /// Largest number of grains.
-pub(crate) const MOST_GRAINS: u64 = 100_000_000;
+pub const MOST_GRAINS: u64 = 100_000_000;
 /// Largest number of wall spheres.
 pub(crate) const MOST_WALL_SPHERES: u64 = 1_000_000_000;
 /// Largest number of wall spheres that a grain meets at once.

@@ -43,6 +43,16 @@ pub const PRESETS: &[Preset] = &[
         summary: "Plastic beads with their weight in a lying tube of four segments that close in turn, in SI units.",
         text: include_str!("../presets/soft-robot.toml"),
     },
+    Preset {
+        name: "silo",
+        summary: "Glass beads that fall through an open tube with a standing bottleneck, in SI units.",
+        text: include_str!("../presets/silo.toml"),
+    },
+    Preset {
+        name: "oesophagus",
+        summary: "A bolus of wet grains in a lying elastic tube that a travelling force squeezes, in SI units.",
+        text: include_str!("../presets/oesophagus.toml"),
+    },
 ];
 
 /// The preset of a name.

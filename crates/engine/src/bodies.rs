@@ -45,13 +45,19 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// The contact with another sphere at this one's place less `separation`; `None` where they do not touch.
-    pub(crate) fn contact(&self, other: &Self, separation: DVec3) -> Option<Contact> {
+    /// The contact with another sphere at this one's place less `separation`, whether they touch or not.
+    pub(crate) fn contact(&self, other: &Self, separation: DVec3) -> Contact {
         let diameters = (self.diameter, other.diameter);
         let contact = Contact::new(diameters, separation, self.velocity - other.velocity);
         let rotation = contact.arm(self.diameter) * self.angular_velocity
             + contact.arm(other.diameter) * other.angular_velocity;
-        contact.touches().then(|| contact.rotating(rotation))
+        contact.rotating(rotation, self.angular_velocity - other.angular_velocity)
+    }
+
+    /// A contact with a wall that does not turn.
+    pub(crate) fn on_wall(&self, contact: Contact) -> Contact {
+        let rotation = contact.arm(self.diameter) * self.angular_velocity;
+        contact.rotating(rotation, self.angular_velocity)
     }
 }
 
@@ -89,6 +95,21 @@ impl Bodies {
             mass,
             inertia,
         }
+    }
+
+    /// Appends grains at rest with these diameters to spheres that are grains all, at the origin.
+    pub(crate) fn push_grains_at_rest(&mut self, diameter: &[f64]) {
+        let more = Self::grains_at_rest(vec![DVec3::ZERO; diameter.len()], diameter.to_vec());
+        self.grains += more.grains;
+        self.position.extend(more.position);
+        self.turns.extend(more.turns);
+        self.velocity.extend(more.velocity);
+        self.acceleration.extend(more.acceleration);
+        self.angular_velocity.extend(more.angular_velocity);
+        self.angular_acceleration.extend(more.angular_acceleration);
+        self.diameter.extend(more.diameter);
+        self.mass.extend(more.mass);
+        self.inertia.extend(more.inertia);
     }
 
     /// Appends a sphere of an elastic wall, at rest; it does not rotate.

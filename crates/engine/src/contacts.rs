@@ -1,10 +1,14 @@
 //! The contacts of a simulation: listed pairs, and the histories that their law needs.
 
-use peristalsis_physics::contact::{CundallStrack, TangentialHistory};
+use peristalsis_physics::contact::{
+    ContactLaw, ContactModel, CundallStrack, General, GeneralHistory, TangentialHistory,
+};
 
 use crate::bodies::Bodies;
+use crate::error::EngineError;
 use crate::fast::threads::Threads;
 use crate::neighbours::{Neighbours, PairRule};
+use crate::snapshot::Remembered;
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
 
@@ -13,6 +17,8 @@ use crate::wall::memory::WallMemory;
 pub(crate) struct Contacts<H> {
     pub(crate) pairs: Neighbours<H>,
     pub(crate) wall: WallMemory<H>,
+    /// Largest gap at which spheres cohere \[d\].
+    range: f64,
 }
 
 impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
@@ -20,7 +26,35 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
         Self {
             pairs: Neighbours::empty(),
             wall: WallMemory::default(),
+            range: 0.0,
         }
+    }
+
+    /// All histories but fresh ones: of pairs, in their order, and of contacts with a prescribed wall.
+    pub(crate) fn remembered(&self) -> Remembered<H> {
+        let pairs = self.pairs.iter().filter(|it| *it.2 != H::default());
+        let owned = |(i, j, history): (u32, u32, &H)| (i, j, *history);
+        [
+            pairs.map(owned).collect(),
+            self.wall.iter().map(owned).collect(),
+        ]
+    }
+
+    /// Takes histories up; the neighbour list holds their pairs.
+    pub(crate) fn remember(
+        &mut self,
+        grains: usize,
+        [pairs, of_wall]: &Remembered<H>,
+    ) -> Result<(), EngineError> {
+        for &(i, j, history) in pairs {
+            if !self.pairs.set_history(i, j, history) {
+                let reason =
+                    format!("it remembers a contact of spheres {i} and {j}, which are far apart");
+                return Err(EngineError::SnapshotMismatch { reason });
+            }
+        }
+        self.wall = WallMemory::from_entries(grains, of_wall);
+        Ok(())
     }
 
     /// Makes the neighbour list anew where it no longer holds.
@@ -40,7 +74,7 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
         let rule = PairRule {
             diameter: &bodies.diameter,
             length: wall.length(),
-            skin,
+            skin: skin + self.range,
             half_width: wall.usual_radius(),
             admits_all_below: grains,
             admits: |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
@@ -55,12 +89,22 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
 pub(crate) enum Memory {
     Smooth(Contacts<()>),
     Frictional(CundallStrack, Contacts<TangentialHistory>),
+    General(General, Contacts<GeneralHistory>),
 }
 
 impl Memory {
-    /// Memory without contacts, for this law in the plane of contact.
-    pub(crate) fn of(friction: Option<CundallStrack>) -> Self {
-        match friction {
+    /// Memory without contacts, for spheres whose largest diameter is `diameter`.
+    pub(crate) fn of(model: &ContactModel, diameter: f64) -> Self {
+        if let Some(tangential) = General::of(model) {
+            let normal = model.normal;
+            let range = ContactLaw { normal, tangential }.range(diameter);
+            let contacts = Contacts {
+                range,
+                ..Contacts::none()
+            };
+            return Self::General(tangential, contacts);
+        }
+        match model.friction {
             None => Self::Smooth(Contacts::none()),
             Some(law) => Self::Frictional(law, Contacts::none()),
         }
@@ -71,15 +115,24 @@ impl Memory {
         match self {
             Self::Smooth(contacts) => contacts.refresh(bodies, wall, skin),
             Self::Frictional(_, contacts) => contacts.refresh(bodies, wall, skin),
+            Self::General(_, contacts) => contacts.refresh(bodies, wall, skin),
         }
     }
 }
 
 /// Evaluates an expression with the contact law and its contacts, whose types the compiler then knows:
-/// `with_contact_law!(normal, memory, |law, contacts| expression)`.
+/// `with_contact_law!(normal, memory, |law, contacts| expression)`; of two expressions the first is for a general law.
 macro_rules! with_contact_law {
     ($normal:expr, $memory:expr, |$law:ident, $contacts:ident| $answer:expr) => {
+        $crate::contacts::with_contact_law!($normal, $memory, |$law, $contacts| $answer, $answer)
+    };
+    ($normal:expr, $memory:expr, |$law:ident, $contacts:ident| $general:expr, $answer:expr) => {
         peristalsis_physics::with_normal_law!($normal, normal => match $memory {
+            $crate::contacts::Memory::General(tangential, $contacts) => {
+                let tangential = *tangential;
+                let $law = &peristalsis_physics::contact::ContactLaw { normal, tangential };
+                $general
+            }
             $crate::contacts::Memory::Smooth($contacts) => {
                 let tangential = peristalsis_physics::contact::Frictionless;
                 let $law = &peristalsis_physics::contact::ContactLaw { normal, tangential };

@@ -6,9 +6,10 @@
 pub enum EngineError {
     /// A sphere moved further than its contacts can follow: the step is too long or the forces too strong.
     #[error(
-        "diverged at step {step} (t = {time}): {} moved {displacement} in one step, more than the {limit} that keeps contacts \
-         from being passed over",
-        sphere(*grain, *grains)
+        "diverged at step {step} (t = {time}): {}{} moved {displacement} in one step, more than the {limit} that keeps \
+         contacts from being passed over",
+        sphere(*grain, *grains),
+        if *outside { ", outside the tube," } else { "" }
     )]
     Diverged {
         /// Step at whose end it was found.
@@ -19,6 +20,8 @@ pub enum EngineError {
         grain: usize,
         /// How many grains there are.
         grains: usize,
+        /// Whether it had left the tube before.
+        outside: bool,
         /// How far it moved in that step \[d\]; not finite where its position is lost.
         displacement: f64,
         /// The bound \[d\].

@@ -118,15 +118,22 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
             let separation = periodic(centre - bodies.position[j], length);
             let reach = 0.5 * (diameter + bodies.diameter[j]);
             let squared = separation.length_squared();
-            if squared >= reach * reach || squared == 0.0 {
+            let diameters = (diameter, bodies.diameter[j]);
+            let contact = || Contact::new(diameters, separation, velocity - bodies.velocity[j]);
+            // Walls do not cohere with themselves.
+            let is_apart = match T::IS_GENERAL && i < grains {
+                true => !law.acts(&contact(), history),
+                false => squared >= reach * reach || squared == 0.0,
+            };
+            if is_apart {
                 if T::ROTATES {
                     tally.history_reset += law.tangential.stored_energy(history);
+                    tally.cohesion_lost += law.tangential.bond(history);
                     *history = T::History::<f64>::default();
                 }
                 continue;
             }
-            let diameters = (diameter, bodies.diameter[j]);
-            let mut contact = Contact::new(diameters, separation, velocity - bodies.velocity[j]);
+            let mut contact = contact();
             if i >= grains {
                 // Wall against wall, across a closing throat: the same normal law, no friction.
                 let answer = law.frictionless().force(&contact, &mut (), time_step);
@@ -140,6 +147,7 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
             if T::ROTATES {
                 contact.rotation =
                     arms.0 * bodies.angular_velocity[i] + arms.1 * bodies.angular_velocity[j];
+                contact.spin = bodies.angular_velocity[i] - bodies.angular_velocity[j];
             }
             let answer = law.force(&contact, history, time_step);
             force += answer.force;
@@ -147,6 +155,11 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
             if T::ROTATES {
                 bodies.angular_acceleration[i] += arms.0 * answer.torque_per_arm;
                 bodies.angular_acceleration[j] += arms.1 * answer.torque_per_arm;
+            }
+            if T::IS_GENERAL {
+                bodies.angular_acceleration[i] += answer.rolling.couple;
+                bodies.angular_acceleration[j] -= answer.rolling.couple;
+                tally.rolling_lost += answer.rolling.lost;
             }
             tally.add_contact(&answer, contact.overlap);
             if j < grains {

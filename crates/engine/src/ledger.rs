@@ -30,7 +30,11 @@ pub struct Tally {
     pub tangential_lost: f64,
     /// Energy lost to sliding in this step.
     pub sliding_lost: f64,
-    /// Energy of tangential springs forgotten in this step because their contacts ended.
+    /// Energy lost in this step to damping and sliding of rolling contacts.
+    pub rolling_lost: f64,
+    /// Energy of cohesion lost in this step because contacts broke.
+    pub cohesion_lost: f64,
+    /// Energy of tangential and rolling springs forgotten in this step because their contacts ended.
     pub history_reset: f64,
     /// Axial force of the wall on the grains, along +z \[m d/t^2\].
     pub wall_axial_force: f64,
@@ -84,8 +88,8 @@ impl Tally {
 
 /// Energies accumulated since the start of the run, by the trapezoidal rule over the steps.
 ///
-/// kinetic + potential = initial + wall + drive + keep + body - normal - tangential - sliding - drag - network - reset, up
-/// to the integrator's error: [`Ledger::residual`]. All in m d^2/t^2. The work of the body force is exact.
+/// kinetic + potential = initial + wall + drive + keep + body + exchanged - normal - tangential - sliding - rolling - cohesion
+/// - drag - network - reset, up to the integrator's error: [`Ledger::residual`]. All in m d^2/t^2. The work of the body force is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Ledger {
     /// Kinetic and potential energy at the start.
@@ -100,6 +104,8 @@ pub struct Ledger {
     pub body_work: f64,
     /// Sum m r of the grains at the start, from which that work is counted \[m d\].
     pub initial_moment: DVec3,
+    /// Energy that grains brought through the inlet of an open tube, less what others took out with them.
+    pub exchanged: f64,
     /// Integral of |power of wall and drive|: with the body's work the scale of the residual.
     pub gross_work: f64,
     /// Lost along the normals of contacts.
@@ -108,11 +114,15 @@ pub struct Ledger {
     pub tangential_dissipated: f64,
     /// Lost to sliding.
     pub sliding_dissipated: f64,
+    /// Lost to rolling resistance.
+    pub rolling_dissipated: f64,
+    /// Lost where contacts that cohered broke.
+    pub cohesion_dissipated: f64,
     /// Lost to drag on the wall.
     pub drag_dissipated: f64,
     /// Lost in the dashpots of the wall's network.
     pub network_dissipated: f64,
-    /// Tangential spring energy forgotten at the end of contacts.
+    /// Energy of tangential and rolling springs forgotten at the end of contacts.
     pub history_reset: f64,
     /// Largest overlap of a contact of a grain at any step \[d\].
     pub largest_overlap: f64,
@@ -134,6 +144,8 @@ impl Ledger {
         self.network_dissipated += half * (before.network_dissipation + after.network_dissipation);
         self.tangential_dissipated += after.tangential_lost;
         self.sliding_dissipated += after.sliding_lost;
+        self.rolling_dissipated += after.rolling_lost;
+        self.cohesion_dissipated += after.cohesion_lost;
         self.history_reset += after.history_reset;
         self.largest_overlap = self.largest_overlap.max(after.largest_overlap);
     }
@@ -154,6 +166,8 @@ impl Ledger {
         self.normal_dissipated
             + self.tangential_dissipated
             + self.sliding_dissipated
+            + self.rolling_dissipated
+            + self.cohesion_dissipated
             + self.drag_dissipated
             + self.network_dissipated
             + self.history_reset
@@ -161,7 +175,8 @@ impl Ledger {
 
     /// Energy that the ledger cannot account for, for kinetic plus potential energy `energy` now.
     pub fn residual(&self, energy: f64) -> f64 {
-        energy - self.initial_energy - self.input() - self.body_work + self.dissipated()
+        energy - self.initial_energy - self.input() - self.body_work - self.exchanged
+            + self.dissipated()
     }
 
     /// |residual| over the integral of |power of wall and drive| and the |work of the body force|; over the initial energy

@@ -5,6 +5,7 @@
 
 mod bodies;
 mod contacts;
+mod ends;
 mod error;
 mod fast;
 mod forces;
@@ -21,6 +22,7 @@ pub mod wall;
 mod wall_contacts;
 
 pub use bodies::{Bodies, Sphere};
+pub use ends::{Ends, OpenEnds, Passages, Passed, Residence, STEPS_PER_LOOK};
 pub use error::EngineError;
 pub use fast::machine::Instructions;
 pub use fast::threads::{processors, threads_that_pay};
@@ -28,7 +30,7 @@ pub use integrate::Past;
 pub use ledger::{Ledger, Tally};
 pub use parameters::{Integrator, Kernel, Parameters};
 pub use simulation::Simulation;
-pub use snapshot::{Snapshot, SnapshotView, Sorting};
+pub use snapshot::{Remembered, Snapshot, SnapshotView, Sorting};
 pub use touching::Touching;
 pub use wall::Wall;
 pub use wall_contacts::WallContact;

@@ -1,11 +1,14 @@
 //! A simulation: spheres, wall, laws and clock, advanced step by step.
 
+mod open;
+
 use glam::DVec3;
-use peristalsis_physics::contact::TangentialHistory;
+use peristalsis_physics::contact::{GeneralHistory, TangentialHistory};
 use peristalsis_physics::with_normal_law;
 
 use crate::bodies::Bodies;
-use crate::contacts::{Memory, with_contact_law};
+use crate::contacts::{Contacts, Memory, with_contact_law};
+use crate::ends::Ends;
 use crate::error::EngineError;
 use crate::fast::listed;
 use crate::fast::machine::Instructions;
@@ -15,11 +18,10 @@ use crate::forces::{Reference, add_body_force, evaluate};
 use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::parameters::{Kernel, Parameters};
-use crate::snapshot::{Snapshot, SnapshotView};
+use crate::snapshot::{Remembered, Snapshot, SnapshotView};
 use crate::steps::Course;
 use crate::touching::{Touching, touching};
 use crate::wall::Wall;
-use crate::wall::memory::WallMemory;
 use crate::wall_contacts::{WallContact, add_up_smooth_contacts, for_each_contact};
 
 /// Grains in a peristaltic tube, advanced in time.
@@ -35,6 +37,8 @@ pub struct Simulation {
     scratch: listed::Scratch,
     /// The kernel that keeps the grains in the order of z, where it serves.
     sorted: Option<Box<Sorted>>,
+    /// The ends of an open tube.
+    ends: Option<Box<Ends>>,
 }
 
 impl Simulation {
@@ -57,8 +61,10 @@ impl Simulation {
     ) -> Result<Self, EngineError> {
         snapshot.check(&wall, &parameters)?;
         let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
+        simulation.ends = snapshot.ends.map(Box::new);
         simulation.refresh_contacts();
-        simulation.remember(snapshot.pair_histories, &snapshot.wall_histories)?;
+        let springs = [snapshot.pair_histories, snapshot.wall_histories];
+        simulation.remember(springs, &snapshot.general_histories)?;
         simulation.begin();
         Ok(simulation)
     }
@@ -71,6 +77,14 @@ impl Simulation {
 
     /// Works out the forces at the start, so that the first step knows its accelerations, and opens the ledger.
     fn begin(&mut self) {
+        self.evaluate_here();
+        self.course.ledger.initial_energy = self.energy();
+        self.course.ledger.initial_moment = self.moment();
+        self.choose_kernel(None);
+    }
+
+    /// Works out the forces where the spheres are; no time passes.
+    fn evaluate_here(&mut self) {
         let Self {
             bodies,
             course,
@@ -82,36 +96,32 @@ impl Simulation {
             course.tally = evaluate(law, bodies, &course.wall, contacts, 0.0);
         });
         add_body_force(bodies, parameters.body_force);
-        self.course.ledger.initial_energy = self.energy();
-        self.course.ledger.initial_moment = self.moment();
-        self.choose_kernel(None);
     }
 
     /// Takes the springs of contacts from a snapshot; the neighbour list holds their pairs.
     fn remember(
         &mut self,
-        pairs: Vec<(u32, u32, TangentialHistory)>,
-        of_wall: &[(u32, u32, TangentialHistory)],
+        springs: Remembered<TangentialHistory>,
+        general: &Remembered<GeneralHistory>,
     ) -> Result<(), EngineError> {
-        let Memory::Frictional(_, contacts) = &mut self.memory else {
-            return Ok(());
-        };
-        for (i, j, history) in pairs {
-            if !contacts.pairs.set_history(i, j, history) {
-                let reason =
-                    format!("it remembers a contact of spheres {i} and {j}, which are far apart");
-                return Err(EngineError::SnapshotMismatch { reason });
-            }
+        let grains = self.bodies.grains;
+        match &mut self.memory {
+            Memory::Smooth(_) => Ok(()),
+            Memory::Frictional(_, contacts) => contacts.remember(grains, &springs),
+            Memory::General(_, contacts) => contacts.remember(grains, general),
         }
-        contacts.wall = WallMemory::from_entries(self.bodies.grains, of_wall);
-        Ok(())
     }
 
-    fn assemble(mut bodies: Bodies, mut wall: Wall, parameters: Parameters) -> Self {
+    fn assemble(mut bodies: Bodies, mut wall: Wall, mut parameters: Parameters) -> Self {
+        if parameters.contact.is_general() {
+            // No other knows rolling resistance and cohesion.
+            parameters.kernel = Kernel::Reference;
+        }
         bodies.fold(wall.length());
         wall.move_to(0.0);
-        let diameters = bodies.diameter.iter().copied();
-        let least_diameter = diameters.fold(f64::INFINITY, f64::min);
+        let diameters = || bodies.diameter.iter().copied();
+        let least_diameter = diameters().fold(f64::INFINITY, f64::min);
+        let memory = Memory::of(&parameters.contact, diameters().fold(0.0, f64::max));
         Self {
             bodies,
             course: Course {
@@ -123,19 +133,22 @@ impl Simulation {
             },
             parameters,
             past: Past::default(),
-            memory: Memory::of(parameters.contact.friction),
+            memory,
             limit: 0.5 * least_diameter,
             scratch: listed::Scratch::default(),
             sorted: None,
+            ends: None,
         }
     }
 
     /// Hands equal smooth grains in a prescribed tube to the kernel that is made for them.
     fn choose_kernel(&mut self, sorting: Option<&Sorting>) {
         let (bodies, wall, parameters) = (&self.bodies, &self.course.wall, &self.parameters);
-        if parameters.kernel == Kernel::Fast && Sorted::serves(bodies, wall, parameters) {
+        // Its order along the tube is lost where grains are put elsewhere.
+        let closed = self.ends.is_none();
+        if closed && parameters.kernel == Kernel::Fast && Sorted::serves(bodies, wall, parameters) {
             // No list is needed any more; its memory serves the kernel.
-            self.memory = Memory::of(None);
+            self.memory = Memory::Smooth(Contacts::none());
             let sorted = Sorted::new(bodies, wall, parameters.skin, sorting);
             self.sorted = sorted.map(Box::new);
         }
@@ -147,6 +160,22 @@ impl Simulation {
     /// [`EngineError::Diverged`] where a sphere moves by more than half the smallest diameter in one step, or its
     /// position is no longer finite; the state is then the one in which the step failed.
     pub fn advance(&mut self, steps: u64) -> Result<(), EngineError> {
+        if self.ends.is_none() {
+            return self.advance_closed(steps);
+        }
+        let end = self.step() + steps;
+        while self.step() < end {
+            let to_look = Ends::steps_to_look(self.step());
+            self.advance_closed(to_look.min(end - self.step()))?;
+            if Ends::steps_to_look(self.step()) == Ends::steps_to_look(0) {
+                self.look_at_ends();
+            }
+        }
+        Ok(())
+    }
+
+    /// Advances without a look at open ends.
+    fn advance_closed(&mut self, steps: u64) -> Result<(), EngineError> {
         let Self {
             bodies,
             course,
@@ -156,27 +185,39 @@ impl Simulation {
             limit,
             scratch,
             sorted,
+            ..
         } = self;
         let (normal, body_force) = (parameters.contact.normal, parameters.body_force);
         let outcome = match sorted {
             Some(sorted) => with_normal_law!(normal, law => {
                 sorted.advance(&law, course, bodies, (body_force, *limit), steps)
             }),
-            None => with_contact_law!(normal, memory, |law, contacts| {
-                let mut reference = Reference {
-                    law,
-                    contacts,
-                    bodies,
-                    past,
-                    parameters,
-                    limit: *limit,
-                    length: course.wall.length(),
-                };
-                match parameters.kernel {
-                    Kernel::Reference => course.advance(&mut reference, steps),
-                    Kernel::Fast => listed::advance(reference, scratch, course, steps),
+            None => {
+                let length = course.wall.length();
+                macro_rules! reference {
+                    ($law:ident, $contacts:ident) => {
+                        Reference {
+                            law: $law,
+                            contacts: $contacts,
+                            bodies,
+                            past,
+                            parameters,
+                            limit: *limit,
+                            length,
+                        }
+                    };
                 }
-            }),
+                let is_plain = parameters.kernel == Kernel::Reference;
+                with_contact_law!(
+                    normal,
+                    memory,
+                    |law, contacts| course.advance(&mut reference!(law, contacts), steps),
+                    match is_plain {
+                        true => course.advance(&mut reference!(law, contacts), steps),
+                        false => listed::advance(reference!(law, contacts), scratch, course, steps),
+                    }
+                )
+            }
         };
         if body_force != DVec3::ZERO {
             // Its work, g . sum m (r - r_0): exact whatever the path, so that no step need look at it.
@@ -188,6 +229,7 @@ impl Simulation {
             time: self.course.time(),
             grain: runaway.body,
             grains: self.bodies.grains,
+            outside: self.is_outside(runaway.body),
             displacement: runaway.displacement,
             limit: self.limit,
         })
@@ -260,9 +302,12 @@ impl Simulation {
             let allowed = "from 0 to contact.static_friction";
             return refused("contact.kinetic_friction", kinetic, allowed);
         }
-        let (Memory::Frictional(law, _), Some(known)) =
-            (&mut self.memory, &mut self.parameters.contact.friction)
-        else {
+        let law = match &mut self.memory {
+            Memory::Frictional(law, _) => Some(law),
+            Memory::General(law, _) => law.friction.as_mut(),
+            Memory::Smooth(_) => None,
+        };
+        let (Some(law), Some(known)) = (law, &mut self.parameters.contact.friction) else {
             let allowed = "grains that began without friction keep none";
             return refused("contact.static_friction", static_friction, allowed);
         };
@@ -367,21 +412,10 @@ impl Simulation {
 
     /// The same, to be written down at once.
     pub fn snapshot_view(&self) -> SnapshotView<'_> {
-        let (pair_histories, wall_histories) = match &self.memory {
-            Memory::Smooth(_) => (Vec::new(), Vec::new()),
-            Memory::Frictional(_, contacts) => (
-                contacts
-                    .pairs
-                    .iter()
-                    .filter(|entry| *entry.2 != TangentialHistory::default())
-                    .map(|(i, j, history)| (i, j, *history))
-                    .collect(),
-                contacts
-                    .wall
-                    .iter()
-                    .map(|(grain, sphere, history)| (grain, sphere, *history))
-                    .collect(),
-            ),
+        let ([pair_histories, wall_histories], general_histories) = match &self.memory {
+            Memory::Smooth(_) => Default::default(),
+            Memory::Frictional(_, contacts) => (contacts.remembered(), Default::default()),
+            Memory::General(_, contacts) => (Default::default(), contacts.remembered()),
         };
         SnapshotView {
             step: self.step(),
@@ -391,7 +425,9 @@ impl Simulation {
             ledger: self.ledger(),
             pair_histories,
             wall_histories,
+            general_histories,
             sorting: self.sorted.as_ref().map(|sorted| sorted.sorting()),
+            ends: self.ends(),
         }
     }
 
@@ -407,17 +443,30 @@ impl Simulation {
         snapshot.check(&wall, &parameters)?;
         let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
         simulation.past = snapshot.past;
+        simulation.ends = snapshot.ends.map(Box::new);
         let course = &mut simulation.course;
         (course.tally, course.ledger) = (snapshot.tally, snapshot.ledger);
         course.step = snapshot.step;
         course.wall.move_to(course.time());
         // Contacts with mobile spheres of the wall, and all that have a history, are found in the list.
-        if course.wall.mobile_spheres() > 0 || parameters.contact.friction.is_some() {
+        let is_smooth = matches!(simulation.memory, Memory::Smooth(_));
+        if course.wall.mobile_spheres() > 0 || !is_smooth {
             simulation.refresh_contacts();
         }
-        simulation.remember(snapshot.pair_histories, &snapshot.wall_histories)?;
+        let springs = [snapshot.pair_histories, snapshot.wall_histories];
+        simulation.remember(springs, &snapshot.general_histories)?;
         simulation.choose_kernel(snapshot.sorting.as_ref());
         Ok(simulation)
+    }
+
+    /// Whether a grain is beyond the wall altogether.
+    fn is_outside(&self, sphere: usize) -> bool {
+        let (place, wall) = (self.bodies.position[sphere], self.wall());
+        let reach = 0.5 * (self.bodies.diameter[sphere] + wall.sphere_diameter());
+        let from_axis = place.x.hypot(place.y);
+        sphere < self.bodies.grains
+            && from_axis.is_finite()
+            && from_axis > wall.usual_radius() + reach
     }
 
     /// First moment of the grains' mass, sum m r with turns round the tube counted \[m d\].

@@ -1,8 +1,9 @@
 //! The whole state of a simulation at one step.
 
-use peristalsis_physics::contact::TangentialHistory;
+use peristalsis_physics::contact::{GeneralHistory, TangentialHistory};
 
 use crate::bodies::Bodies;
+use crate::ends::Ends;
 use crate::error::EngineError;
 use crate::fast::sorted::Sorted;
 pub use crate::fast::sorted::Sorting;
@@ -10,6 +11,10 @@ use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::parameters::Parameters;
 use crate::wall::Wall;
+
+/// Histories of contacts between moving spheres, (sphere i, sphere j, history), i < j, and of contacts with a prescribed wall,
+/// (grain, wall sphere, history), in order of the grains.
+pub type Remembered<H> = [Vec<(u32, u32, H)>; 2];
 
 /// The state for a restart: spheres, the integrator's past, histories of contacts, the ledger.
 ///
@@ -31,8 +36,12 @@ pub struct Snapshot {
     pub pair_histories: Vec<(u32, u32, TangentialHistory)>,
     /// (grain, wall sphere, history) of contacts with a prescribed wall, in order of the grains.
     pub wall_histories: Vec<(u32, u32, TangentialHistory)>,
+    /// Both, where there is rolling resistance or cohesion.
+    pub general_histories: Remembered<GeneralHistory>,
     /// The order of the grains along the tube, where the kernel keeps one.
     pub sorting: Option<Sorting>,
+    /// The ends of an open tube.
+    pub ends: Option<Ends>,
 }
 
 /// A [`Snapshot`] of a simulation that still holds it all: written down, it gives the same bytes, without a copy.
@@ -45,7 +54,9 @@ pub struct SnapshotView<'a> {
     pub(crate) ledger: &'a Ledger,
     pub(crate) pair_histories: Vec<(u32, u32, TangentialHistory)>,
     pub(crate) wall_histories: Vec<(u32, u32, TangentialHistory)>,
+    pub(crate) general_histories: Remembered<GeneralHistory>,
     pub(crate) sorting: Option<Sorting>,
+    pub(crate) ends: Option<&'a Ends>,
 }
 
 impl SnapshotView<'_> {
@@ -59,7 +70,9 @@ impl SnapshotView<'_> {
             ledger: *self.ledger,
             pair_histories: self.pair_histories,
             wall_histories: self.wall_histories,
+            general_histories: self.general_histories,
             sorting: self.sorting,
+            ends: self.ends.cloned(),
         }
     }
 }
@@ -98,6 +111,10 @@ impl Snapshot {
         if !finite {
             return mismatch("it holds positions or velocities that are not finite".to_owned());
         }
+        let ends = self.ends.as_ref();
+        if ends.is_some_and(|ends| wall_spheres > 0 || !ends.fits(bodies.grains)) {
+            return mismatch("its open ends are those of another tube".to_owned());
+        }
         let past = &self.past;
         if [
             &past.velocity,
@@ -110,24 +127,25 @@ impl Snapshot {
         {
             return mismatch("the integrator's past differs in length".to_owned());
         }
-        let smooth = parameters.contact.friction.is_none();
-        if smooth && !(self.pair_histories.is_empty() && self.wall_histories.is_empty()) {
-            return mismatch("it remembers frictional contacts, the grains are smooth".to_owned());
-        }
-        let known = |i: u32| (i as usize) < number;
-        if self
-            .pair_histories
-            .iter()
-            .any(|&(i, j, _)| i >= j || !known(j))
-            || self
-                .wall_histories
-                .windows(2)
-                .any(|pair| pair[0].0 > pair[1].0)
-            || self
-                .wall_histories
-                .iter()
-                .any(|&(grain, _, _)| grain as usize >= bodies.grains)
+        let Self {
+            pair_histories,
+            wall_histories,
+            general_histories,
+            ..
+        } = self;
+        let is_empty = |it: [bool; 2]| it == [true; 2];
+        let springs = is_empty([pair_histories.is_empty(), wall_histories.is_empty()]);
+        let general = is_empty(general_histories.each_ref().map(Vec::is_empty));
+        if (parameters.contact.friction.is_none() && !springs)
+            || (!parameters.contact.is_general() && !general)
         {
+            return mismatch(
+                "it remembers contacts of another law than the grains have".to_owned(),
+            );
+        }
+        let known = check_histories(bodies, pair_histories, wall_histories)
+            && check_histories(bodies, &general_histories[0], &general_histories[1]);
+        if !known {
             return mismatch("it remembers contacts of spheres that do not exist".to_owned());
         }
         if let Some(sorting) = &self.sorting
@@ -140,4 +158,14 @@ impl Snapshot {
         }
         Ok(())
     }
+}
+
+/// Whether contacts are of spheres that exist, in their order.
+fn check_histories<H>(bodies: &Bodies, pairs: &[(u32, u32, H)], wall: &[(u32, u32, H)]) -> bool {
+    let known = |i: u32| (i as usize) < bodies.number();
+    pairs.iter().all(|&(i, j, _)| i < j && known(j))
+        && wall.windows(2).all(|pair| pair[0].0 <= pair[1].0)
+        && wall
+            .iter()
+            .all(|&(grain, _, _)| (grain as usize) < bodies.grains)
 }

@@ -20,7 +20,7 @@ pub struct Touching {
     pub second: usize,
     /// r_first - r_second, to the nearest image along the tube \[d\].
     pub separation: DVec3,
-    /// xi \[d\].
+    /// xi; below 0 where the spheres cohere across a gap \[d\].
     pub overlap: f64,
     /// Force on the first sphere \[m d/t^2\].
     pub force: DVec3,
@@ -30,6 +30,8 @@ pub struct Touching {
     pub tangential_force: f64,
     /// Whether the contact slides.
     pub sliding: bool,
+    /// Couple on the first sphere by rolling resistance; the second feels the opposite \[m d^2/t^2\].
+    pub couple: DVec3,
 }
 
 /// All contacts at the present positions and velocities, in order of the first sphere; those of a grain with other moving
@@ -51,38 +53,46 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
             let second = partner as usize;
             let there = bodies.sphere(second);
             let separation = periodic(here.position - there.position, wall.length());
-            let Some(contact) = here.contact(&there, separation) else {
-                continue;
-            };
+            let contact = here.contact(&there, separation);
             // Wall against wall has no friction.
-            found.push(if first >= bodies.grains {
-                answered(&law.frictionless(), &contact, (), first, second)
+            if first >= bodies.grains {
+                let law = &law.frictionless();
+                found.extend(answered(law, &contact, (), first, second));
             } else {
-                answered(law, &contact, *history, first, second)
-            });
+                found.extend(answered(law, &contact, *history, first, second));
+            }
         }
         if first >= bodies.grains {
             continue;
         }
-        wall.for_each_contact(&here, |sphere, contact, _| {
+        wall.for_each_contact(&here, law.range(here.diameter), |sphere, contact, _| {
             let history = contacts.wall.take(first, sphere);
             let second = bodies.grains + sphere as usize;
-            let contact = contact.rotating(contact.arm(here.diameter) * here.angular_velocity);
-            found.push(answered(law, &contact, history, first, second));
+            found.extend(answered(
+                law,
+                &here.on_wall(contact),
+                history,
+                first,
+                second,
+            ));
         });
     }
     found
 }
 
+/// What the law answers for two spheres; `None` where it does not act.
 fn answered<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     contact: &Contact,
     mut history: T::History<f64>,
     first: usize,
     second: usize,
-) -> Touching {
+) -> Option<Touching> {
+    if !law.acts(contact, &history) {
+        return None;
+    }
     let answer = law.force(contact, &mut history, 0.0);
-    Touching {
+    Some(Touching {
         first,
         second,
         separation: contact.normal * contact.distance,
@@ -91,5 +101,6 @@ fn answered<N: NormalLaw, T: TangentialLaw>(
         normal_force: answer.force.dot(contact.normal),
         tangential_force: answer.tangential.force.length(),
         sliding: answer.tangential.sliding,
-    }
+        couple: answer.rolling.couple,
+    })
 }

@@ -46,7 +46,8 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
         let (i, j) = (i as usize, j as usize);
         if i < bodies.grains && j >= bodies.grains {
             let separation = periodic(bodies.position[i] - bodies.position[j], wall.length());
-            if let Some(contact) = bodies.sphere(i).contact(&bodies.sphere(j), separation) {
+            let contact = bodies.sphere(i).contact(&bodies.sphere(j), separation);
+            if law.acts(&contact, history) {
                 visit(answered(law, bodies, i, &contact, *history));
             }
         }
@@ -85,7 +86,7 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     })
 }
 
-/// Calls `visit` for each contact of some grains with what of the wall no force moves; `history` answers the history of a
+/// Calls `visit` for each contact of some grains with what of the wall no force moves, as far as cohesion reaches; `history` answers the history of a
 /// contact of a grain with a wall sphere.
 fn touch_immobile<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
@@ -99,9 +100,11 @@ fn touch_immobile<N: NormalLaw, T: TangentialLaw>(
     let last = grains.end.saturating_sub(1);
     for grain in grains {
         let here = bodies.sphere(grain);
-        wall.for_each_contact(&here, |sphere, contact, _| {
-            let contact = contact.rotating(contact.arm(here.diameter) * here.angular_velocity);
-            found.push((grain, contact, history(grain, sphere)));
+        wall.for_each_contact(&here, law.range(here.diameter), |sphere, contact, _| {
+            let history = history(grain, sphere);
+            if law.acts(&contact, &history) {
+                found.push((grain, here.on_wall(contact), history));
+            }
         });
         if found.len() >= AT_A_TIME || grain == last {
             for (grain, contact, history) in found.drain(..) {

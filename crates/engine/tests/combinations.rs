@@ -9,14 +9,19 @@ struct Case {
     state: State,
 }
 
-/// {linear, hertz} x {friction, none} x {mono-, polydisperse} x {strain, stress} x {Verlet, Adams-Bashforth}.
+/// {linear, hertz} x {friction, none} x {mono-, polydisperse} x {strain, strain of an even wall, stress} x {Verlet, Adams-Bashforth}.
 fn table() -> Vec<Case> {
     let strain = strained(coarse(2), -1.0, 2.6, 0.1);
+    let even = smooth(strain.clone());
     let stress = elastic(elastic_parameters());
     let mut rows = Vec::new();
     for (law, normal, friction, integrator) in methods() {
         for (sizes, diameter_min) in [("monodisperse", 1.0), ("polydisperse", 0.8)] {
-            for (control, wall, number) in [("strain", &strain, 60), ("stress", &stress, 120)] {
+            for (control, wall, number) in [
+                ("strain", &strain, 60),
+                ("even", &even, 60),
+                ("stress", &stress, 120),
+            ] {
                 rows.push(Case {
                     name: format!("{law}, {sizes}, {control}, {integrator:?}"),
                     state: State {
@@ -39,7 +44,7 @@ fn start(case: &Case) -> Simulation {
 fn each_runs_closes_its_ledger_and_goes_on_from_a_snapshot_with_the_same_bits() {
     const STEPS: u64 = 300;
     let rows = table();
-    assert_eq!(rows.len(), 32);
+    assert_eq!(rows.len(), 48);
     let mut all_bits = Vec::new();
     for row in &rows {
         let name = &row.name;
@@ -125,7 +130,7 @@ fn a_snapshot_of_another_simulation_is_refused() {
     simulation.advance(50).unwrap();
     let snapshot = simulation.snapshot();
     assert!(!snapshot.wall_histories.is_empty());
-    for (row, reason) in [(smooth, "smooth"), (elastic, "wall spheres")] {
+    for (row, reason) in [(smooth, "another law"), (elastic, "wall spheres")] {
         let refused = Simulation::restore(
             snapshot.clone(),
             row.state.wall.clone(),

@@ -42,9 +42,15 @@ const LATER: Apart = Apart {
 };
 
 fn all_rows() -> Vec<Row> {
-    [Tube::Narrow, Tube::Scattered, Tube::Wide, Tube::Elastic]
-        .map(rows)
-        .concat()
+    [
+        Tube::Narrow,
+        Tube::Scattered,
+        Tube::Smooth,
+        Tube::Wide,
+        Tube::Elastic,
+    ]
+    .map(rows)
+    .concat()
 }
 
 fn number() -> impl Strategy<Value = usize> {

@@ -57,6 +57,14 @@ fn under_strain_control() {
     });
 }
 
+#[test]
+fn under_a_smooth_wall() {
+    let wall = smooth(strained(coarse(2), -1.0, 2.6, 0.1));
+    closes(&wall, 60, |simulation| {
+        assert!(simulation.ledger().wall_work != 0.0);
+    });
+}
+
 /// Springs with dashpots, drag, every part of what keeps the wall, the drive, grains: all at once.
 #[test]
 fn under_stress_control_with_everything_on() {

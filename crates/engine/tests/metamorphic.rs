@@ -323,6 +323,7 @@ impl Units {
                 tangential_damping: self.damping() * law.tangential_damping,
                 ..law
             }),
+            ..contact
         }
     }
 }

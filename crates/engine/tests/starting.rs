@@ -9,8 +9,7 @@ use common::*;
 fn packing(number: usize, state: InitialState, seed: u64) -> Packing {
     Packing {
         number,
-        diameter_min: 0.8,
-        diameter_max: 1.0,
+        sizes: Sizes::Uniform([0.8, 1.0]),
         state,
         axial_velocity: 0.0,
         seed,
@@ -300,11 +299,27 @@ fn lost_numbers_are_found() {
                     EngineError::Diverged {
                         step: 1,
                         grain: 1,
+                        outside: false,
                         ..
                     }
                 ),
                 "{stopped}"
             );
         }
+    }
+}
+
+#[test]
+fn a_grain_that_had_left_the_tube_is_said_to_have_left_it() {
+    for (x, outside) in [(0.0, false), (25.0, true)] {
+        let fast = (DVec3::new(x, 0.0, 5.0), DVec3::new(0.0, 0.0, 100.0));
+        let parameters = parameters(LINEAR, None, Integrator::Verlet, 0.05);
+        let mut simulation = Simulation::new(grains(&[fast]), wide(20.0), parameters);
+        let said = simulation.advance(1).unwrap_err().to_string();
+        assert_eq!(
+            said.contains("grain 0, outside the tube, moved"),
+            outside,
+            "{said}"
+        );
     }
 }

@@ -6,9 +6,10 @@ use common::*;
 
 const BODY_FORCE: DVec3 = DVec3::new(0.001, -0.0005, -0.003);
 
-fn walls() -> [Wall; 2] {
+fn walls() -> [Wall; 3] {
     let driven = elastic_with(|wall| wall.force_amplitude = Schedule::constant(0.02));
-    [strained(coarse(2), -1.0, 2.4, 0.1), elastic(driven)]
+    let strained = strained(coarse(2), -1.0, 2.4, 0.1);
+    [strained.clone(), smooth(strained), elastic(driven)]
 }
 
 /// Normal and tangential force on all grains, and the number of contacts.

@@ -69,6 +69,8 @@ pub struct SnapshotFigure<'a> {
     pub title: &'a str,
     /// The snapshots from top to bottom.
     pub snapshots: &'a [Snapshot<'a>],
+    /// The speed over which velocities are told, in markup: that of the wave, *c*, where it moves.
+    pub speed: &'a str,
     /// Width of the figure.
     pub width: Width,
 }
@@ -126,8 +128,8 @@ impl SnapshotFigure<'_> {
             }
         }
         let grains = self.snapshots.iter().flat_map(|snapshot| snapshot.grains);
-        let name = "axial velocity along the wave, *v_z*/*c*";
-        let mut scale = ColourScale::new(name, -DEEPEST, DEEPEST).palette(Palette::Diverging);
+        let name = format!("axial velocity along the wave, *v_z*/{}", self.speed);
+        let mut scale = ColourScale::new(&name, -DEEPEST, DEEPEST).palette(Palette::Diverging);
         // Its ends say so where some of the grains are beyond them.
         scale.found = extent(grains.map(|grain| grain.axial_velocity));
         ChartFigure::grid(1, panels)
@@ -316,6 +318,7 @@ mod tests {
         SnapshotFigure {
             title,
             snapshots,
+            speed: "*c*",
             width,
         }
         .draw()

@@ -26,6 +26,12 @@ pub enum Scope {
     ElasticWall,
     /// Those with a body force on the grains.
     BodyForce,
+    /// Those with rolling resistance.
+    Rolling,
+    /// Those with cohesion.
+    Cohesion,
+    /// Those of an open tube.
+    OpenTube,
 }
 
 const fn row(
@@ -41,7 +47,7 @@ const fn row(
     }
 }
 
-use Scope::{Always, BodyForce, ElasticWall, Friction};
+use Scope::{Always, BodyForce, Cohesion, ElasticWall, Friction, OpenTube, Rolling};
 
 /// The columns of the time series, in order.
 #[rustfmt::skip]
@@ -89,6 +95,14 @@ pub const COLUMNS: &[Column] = &[
     row("wall_azimuthal_displacement_rms", "d", ElasticWall, "root mean square azimuthal displacement of the wall", |s| s.wall_azimuthal_displacement_rms),
     row("body_power", "m d^2/t^3", BodyForce, "mean power of the body force on the grains; negative where they are pumped against it", |s| s.body_power),
     row("body_work", "m d^2/t^2", BodyForce, "ledger: work of the body force", |s| s.ledger.body_work),
+    row("rolling_dissipated", "m d^2/t^2", Rolling, "ledger: lost to rolling resistance", |s| s.ledger.rolling_dissipated),
+    row("cohesion_dissipated", "m d^2/t^2", Cohesion, "ledger: lost where contacts that cohered broke", |s| s.ledger.cohesion_dissipated),
+    row("discharge_rate", "m/t", OpenTube, "mass that leaves through the outlet, mean over the interval", |s| s.discharge_rate),
+    row("return_rate", "m/t", OpenTube, "mass that leaves through the inlet, against the flow", |s| s.return_rate),
+    row("feed_rate", "m/t", OpenTube, "mass that is put in at the inlet", |s| s.feed_rate),
+    row("discharged", "m", OpenTube, "mass that has left through the outlet since the start", |s| s.discharged),
+    row("hold_up", "m", OpenTube, "mass of the grains between the ends", |s| s.hold_up),
+    row("exchanged_energy", "m d^2/t^2", OpenTube, "ledger: energy that grains brought in, less what others took out", |s| s.ledger.exchanged),
 ];
 
 /// The columns of the profile in the wave frame, in order.

@@ -1,7 +1,7 @@
 //! What the grains bear: the forces on them, and the stress that follows from them.
 
 use glam::{DMat3, DVec3};
-use peristalsis_engine::{Bodies, Simulation, Touching};
+use peristalsis_engine::{Bodies, Ends, Simulation, Touching};
 
 use crate::shape::TubeShape;
 
@@ -46,10 +46,11 @@ impl GrainContact {
         self.touching.force - self.touching.normal_force * self.normal
     }
 
-    /// Torque on the first and on the second sphere, -l n x f_t \[m d^2/t^2\].
+    /// Torque on the first and on the second sphere, -l n x f_t and the couple that resists rolling \[m d^2/t^2\].
     fn torques(&self) -> [DVec3; 2] {
         let per_arm = -self.normal.cross(self.tangential_force());
-        self.arms.map(|arm| arm * per_arm)
+        let [first, second] = self.arms.map(|arm| arm * per_arm);
+        [first + self.touching.couple, second - self.touching.couple]
     }
 
     /// Branch vector: from the second grain to the first, or to it from where it touches the wall \[d\].
@@ -96,7 +97,7 @@ impl Load {
         let weight = |mass: &f64| *mass * body_force;
         let mut forces: Vec<DVec3> = masses.iter().map(weight).collect();
         let mut torques = vec![DVec3::ZERO; bodies.grains];
-        let mut virial = kinetic_part(bodies);
+        let mut virial = kinetic_part(bodies, simulation.ends());
         for contact in grain_contacts(simulation) {
             let Touching {
                 first,
@@ -122,8 +123,12 @@ impl Load {
 }
 
 /// sum m dv dv of the grains, dv counted from their mean velocity.
-fn kinetic_part(bodies: &Bodies) -> DMat3 {
-    let grains = || bodies.mass[..bodies.grains].iter().zip(&bodies.velocity);
+fn kinetic_part(bodies: &Bodies, ends: Option<&Ends>) -> DMat3 {
+    let waits = |grain: usize| ends.is_some_and(|ends| ends.waits(grain));
+    let grains = || {
+        let present = (0..bodies.grains).filter(|grain| !waits(*grain));
+        present.map(|grain| (&bodies.mass[grain], &bodies.velocity[grain]))
+    };
     let mass: f64 = grains().map(|(mass, _)| mass).sum();
     if mass == 0.0 {
         return DMat3::ZERO;

@@ -1,7 +1,7 @@
 //! One row of the time series: what a run looked like over one interval.
 
 use glam::DVec3;
-use peristalsis_engine::{Bodies, Ledger, Simulation};
+use peristalsis_engine::{Ends, Ledger, Passages, Passed, Simulation};
 
 use crate::series::{Join, joined};
 use crate::view::View;
@@ -79,6 +79,16 @@ pub struct Sample {
     pub wall_axial_displacement_rms: f64,
     /// Root mean square azimuthal displacement of an elastic wall \[d\].
     pub wall_azimuthal_displacement_rms: f64,
+    /// Mass that leaves an open tube through the outlet, per time, mean over the interval.
+    pub discharge_rate: f64,
+    /// Mass that leaves it through the inlet, per time, mean over the interval.
+    pub return_rate: f64,
+    /// Mass that is put in at the inlet, per time, mean over the interval.
+    pub feed_rate: f64,
+    /// Mass that has left through the outlet since the start.
+    pub discharged: f64,
+    /// Mass between the ends.
+    pub hold_up: f64,
     /// The energy ledger since the start.
     pub ledger: Ledger,
 }
@@ -95,6 +105,9 @@ impl Join for Sample {
             wall_power: mean(|it| it.wall_power),
             body_power: mean(|it| it.body_power),
             dissipated_power: mean(|it| it.dissipated_power),
+            discharge_rate: mean(|it| it.discharge_rate),
+            return_rate: mean(|it| it.return_rate),
+            feed_rate: mean(|it| it.feed_rate),
             ..*next
         };
     }
@@ -105,11 +118,12 @@ impl Join for Sample {
 pub struct Observer {
     pub(crate) time: f64,
     pub(crate) cycles: f64,
-    /// z of the grains, turns round the tube counted \[d\].
+    /// z of the grains as they have moved, turns round the tube counted \[d\].
     pub(crate) unfolded: Vec<f64>,
     /// The same at the start of the run.
     start: Vec<f64>,
     ledger: Ledger,
+    passages: Passages,
 }
 
 impl Observer {
@@ -124,16 +138,17 @@ impl Observer {
 
     /// Begins an interval now; displacements count from `start`.
     fn at(simulation: &Simulation, start: Vec<f64>) -> Self {
-        let length = simulation.wall().length();
-        let bodies = simulation.bodies();
+        let grains = simulation.bodies().grains;
         Self {
             time: simulation.time(),
             cycles: simulation.wall().cycles(),
-            unfolded: (0..bodies.grains)
-                .map(|i| bodies.unfolded(i, length))
-                .collect(),
+            unfolded: (0..grains).map(|i| simulation.travelled(i)).collect(),
             start,
             ledger: *simulation.ledger(),
+            passages: simulation
+                .ends()
+                .map(|ends| *ends.passages())
+                .unwrap_or_default(),
         }
     }
 
@@ -165,9 +180,13 @@ impl Sample {
         let bodies = simulation.bodies();
         let (tally, ledger) = (simulation.tally(), simulation.ledger());
         let heading = wall.heading();
-        let length = wall.length();
+        let length = simulation.length();
         let interval = after.time - before.time;
-        let grains = bodies.grains as f64;
+        let waiting = simulation.ends().map_or(0, Ends::waiting);
+        let grains = (bodies.grains - waiting) as f64;
+        let (passed, passed_before) = (&after.passages, &before.passages);
+        let mass_rate =
+            |of: fn(&Passages) -> &Passed| (of(passed).mass - of(passed_before).mass) / interval;
 
         let sums = GrainSums::of(before, after, view);
         let inside = sums.inside;
@@ -200,7 +219,7 @@ impl Sample {
             flow_rate_instantaneous: heading * sums.axial_velocity / length,
             kinetic_energy,
             rotational_energy,
-            granular_temperature: granular_temperature(bodies, sums.velocity / grains),
+            granular_temperature: granular_temperature(simulation, sums.velocity / grains),
             contacts: if grains > 0.0 { contacts / grains } else { 0.0 },
             sliding_fraction: tally.sliding_contacts as f64 / distinct_contacts,
             axial_displacement: sums.displaced / inside,
@@ -224,6 +243,11 @@ impl Sample {
             wall_axial_displacement: heading * wall_motion.axial,
             wall_axial_displacement_rms: wall_motion.axial_rms,
             wall_azimuthal_displacement_rms: wall_motion.azimuthal_rms,
+            discharge_rate: mass_rate(|passed| &passed.discharged),
+            return_rate: mass_rate(|passed| &passed.returned),
+            feed_rate: mass_rate(|passed| &passed.fed),
+            discharged: passed.discharged.mass,
+            hold_up: hold_up(simulation),
             ledger: *ledger,
         }
     }
@@ -294,18 +318,29 @@ fn variance(number: f64, sum: f64, sum_of_squares: f64) -> f64 {
     if variance < 0.0 { 0.0 } else { variance }
 }
 
+/// Mass of the grains between the ends of an open tube, of all grains of a periodic one \[m\].
+fn hold_up(simulation: &Simulation) -> f64 {
+    let (bodies, ends) = (simulation.bodies(), simulation.ends());
+    let present = |grain: &usize| ends.is_none_or(|ends| !ends.waits(*grain));
+    let present = (0..bodies.grains).filter(present);
+    present.map(|grain| bodies.mass[grain]).sum()
+}
+
 /// `sum m |v - <v>|^2/(3 N)` for the mean velocity `<v>`; 0 without grains.
-fn granular_temperature(bodies: &Bodies, mean: DVec3) -> f64 {
-    let number = bodies.grains as f64;
-    if bodies.grains == 0 {
+fn granular_temperature(simulation: &Simulation, mean: DVec3) -> f64 {
+    let (bodies, ends) = (simulation.bodies(), simulation.ends());
+    let number = bodies.grains - ends.map_or(0, Ends::waiting);
+    if number == 0 {
         return 0.0;
     }
     let sum: f64 = bodies.velocity[..bodies.grains]
         .iter()
         .zip(&bodies.mass)
-        .map(|(velocity, mass)| mass * (*velocity - mean).length_squared())
+        .enumerate()
+        .filter(|(grain, _)| ends.is_none_or(|ends| !ends.waits(*grain)))
+        .map(|(_, (velocity, mass))| mass * (*velocity - mean).length_squared())
         .sum();
-    sum / (3.0 * number)
+    sum / (3.0 * number as f64)
 }
 
 /// How an elastic wall is displaced; zero for a prescribed one.

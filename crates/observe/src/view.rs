@@ -1,6 +1,6 @@
 //! A simulation as it is, looked at once for all observables.
 
-use peristalsis_engine::{Bodies, Simulation};
+use peristalsis_engine::{Bodies, Ends, Simulation};
 
 use crate::shape::TubeShape;
 
@@ -9,7 +9,7 @@ use crate::shape::TubeShape;
 pub struct View<'a> {
     pub(crate) simulation: &'a Simulation,
     pub(crate) shape: TubeShape,
-    /// Of each grain whether it is inside.
+    /// Of each grain whether it is inside the tube, between its ends.
     pub(crate) inside: Vec<bool>,
 }
 
@@ -18,7 +18,10 @@ impl<'a> View<'a> {
     pub fn of(simulation: &'a Simulation) -> Self {
         let shape = TubeShape::of(simulation);
         let bodies = simulation.bodies();
-        let inside = (0..bodies.grains).map(|grain| !has_escaped(bodies, grain, &shape));
+        let ends = simulation.ends();
+        let waits = |grain| ends.is_some_and(|ends: &Ends| ends.waits(grain));
+        let inside = |grain| !has_escaped(bodies, grain, &shape) && !waits(grain);
+        let inside = (0..bodies.grains).map(inside);
         Self {
             simulation,
             inside: inside.collect(),
@@ -26,9 +29,10 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Grains outside the tube: their centre is farther from the axis than R + d/2.
+    /// Grains outside the tube: their centre is farther from the axis than R + d/2. Those that wait at the inlet do not count.
     pub fn escaped(&self) -> usize {
-        self.inside.iter().filter(|&&inside| !inside).count()
+        let outside = self.inside.iter().filter(|&&inside| !inside).count();
+        outside - self.simulation.ends().map_or(0, Ends::waiting)
     }
 
     /// J from the velocities of the grains inside the tube, along the wave \[1/t\].
@@ -39,7 +43,7 @@ impl<'a> View<'a> {
             .filter(|&(_, &inside)| inside)
             .map(|(velocity, _)| velocity.z)
             .sum();
-        wall.heading() * flux / wall.length()
+        wall.heading() * flux / self.simulation.length()
     }
 }
 

@@ -93,11 +93,14 @@ impl WaveByWave {
         let half_way = 0.5 * (before.cycles + after.cycles) + throat;
         let wave_run = (after.cycles - before.cycles) * wavelength;
         let grains = before.unfolded.iter().zip(&after.unfolded);
-        for ((start, end), &inside) in grains.zip(&view.inside) {
+        let ends = view.simulation.ends();
+        for (grain, ((start, end), &inside)) in grains.zip(&view.inside).enumerate() {
             if !inside {
                 continue;
             }
-            let along = 0.5 * heading * (start + end) / wavelength - half_way;
+            // Where it is in the tube, whatever it has travelled.
+            let carried = ends.map_or(0.0, |ends| ends.carried(grain));
+            let along = (0.5 * heading * (start + end) + heading * carried) / wavelength - half_way;
             let wave = (floor(along) as i64).rem_euclid(waves as i64);
             let sums = &mut self.sums[wave as usize];
             sums.grains += 1.0;

@@ -36,13 +36,13 @@ fn wall(heading: f64, amplitude: f64) -> Wall {
 
 fn parameters() -> Parameters {
     Parameters {
-        contact: ContactModel {
-            normal: Normal::Linear(LinearSpringDashpot {
+        contact: ContactModel::new(
+            Normal::Linear(LinearSpringDashpot {
                 normal_stiffness: 1.0,
                 normal_damping: 5.48e-3,
             }),
-            friction: None,
-        },
+            None,
+        ),
         integrator: Integrator::Verlet,
         time_step: 0.05,
         skin: 0.3,

@@ -11,7 +11,9 @@
 #![forbid(unsafe_code)]
 
 pub mod contact;
+pub mod ends;
 pub mod method;
 pub mod newtonian;
 pub mod real;
+pub mod sizes;
 pub mod wall;

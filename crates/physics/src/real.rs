@@ -40,6 +40,8 @@ pub trait Real:
     fn splat(value: f64) -> Self;
     /// The square root.
     fn sqrt(self) -> Self;
+    /// The cube root.
+    fn cube_root(self) -> Self;
     /// Where this is less than `other`.
     fn less(self, other: Self) -> Self::Mask;
     /// `yes` where `mask` holds, else `no`; both are evaluated.
@@ -112,6 +114,11 @@ impl Real for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn cube_root(self) -> Self {
+        libm::cbrt(self)
     }
 
     #[inline(always)]

@@ -5,8 +5,8 @@ mod common;
 use common::{Collision, answer, table};
 use glam::{DQuat, DVec3};
 use peristalsis_physics::contact::{
-    Contact, ContactModel, CundallStrack, Normal, NormalForce, NormalLaw, TangentialHistory,
-    TangentialLaw, reduced_radius,
+    Cohesion, Contact, ContactModel, CundallStrack, GeneralHistory, Normal, NormalForce, NormalLaw,
+    TangentialHistory, TangentialLaw, reduced_radius,
 };
 use proptest::prelude::*;
 
@@ -14,7 +14,7 @@ use proptest::prelude::*;
 #[derive(Clone, Debug)]
 struct Case {
     contact: Contact,
-    history: TangentialHistory,
+    history: GeneralHistory,
     time_step: f64,
 }
 
@@ -50,13 +50,21 @@ fn case() -> impl Strategy<Value = Case> {
                         relative_velocity,
                         reduced_radius: reduced_radius(one, other),
                         rotation,
+                        spin: DVec3::new(rotation.y, rotation.z, rotation.x) + relative_velocity,
                     },
-                    history: TangentialHistory {
-                        displacement: lateral(u),
-                        rate: lateral(rate),
-                        power,
-                        // As good as any coin for both branches to be seen.
-                        sliding: power > 0.0,
+                    history: GeneralHistory {
+                        friction: TangentialHistory {
+                            displacement: lateral(u),
+                            rate: lateral(rate),
+                            power,
+                            // As good as any coin for both branches to be seen.
+                            sliding: power > 0.0,
+                        },
+                        rolling: TangentialHistory {
+                            displacement: lateral(0.2 * rate),
+                            ..TangentialHistory::default()
+                        },
+                        bond: 0.0,
                     },
                     time_step,
                 }
@@ -67,10 +75,7 @@ fn case() -> impl Strategy<Value = Case> {
 fn ask(
     model: &ContactModel,
     case: &Case,
-) -> (
-    peristalsis_physics::contact::ContactForce,
-    TangentialHistory,
-) {
+) -> (peristalsis_physics::contact::ContactForce, GeneralHistory) {
     let mut history = case.history;
     (
         answer(model, &case.contact, &mut history, case.time_step),
@@ -89,6 +94,26 @@ fn undamped(model: &ContactModel) -> ContactModel {
             tangential_damping: 0.0,
             ..law
         }),
+        ..*model
+    }
+}
+
+/// The force that bounds friction, for a normal force f_n.
+fn pressing(model: &ContactModel, contact: &Contact, force: f64) -> f64 {
+    let pull_off = |law: Cohesion| law.pull_off(contact.reduced_radius);
+    let added = match model.cohesion {
+        None => 0.0,
+        Some(law) if law.is_jkr() => 2.0 * pull_off(law),
+        Some(law) => pull_off(law),
+    };
+    (force + added).max(0.0)
+}
+
+fn turned(turn: DQuat, history: TangentialHistory) -> TangentialHistory {
+    TangentialHistory {
+        displacement: turn * history.displacement,
+        rate: turn * history.rate,
+        ..history
     }
 }
 
@@ -109,11 +134,15 @@ proptest! {
     #[test]
     fn a_fresh_contact_at_rest_begins_without_force(case in case()) {
         for (name, model) in table() {
+            if model.cohesion.is_some() {
+                continue;
+            }
             let mut forces = [1e-4, 1e-6, 1e-8].map(|overlap| {
                 let mut contact = with_overlap(&case.contact, overlap);
                 contact.relative_velocity = DVec3::ZERO;
                 contact.rotation = DVec3::ZERO;
-                let answer = answer(&model, &contact, &mut TangentialHistory::default(), case.time_step);
+                contact.spin = DVec3::ZERO;
+                let answer = answer(&model, &contact, &mut GeneralHistory::default(), case.time_step);
                 prop_assert!(answer.force.dot(contact.normal) > 0.0, "{}: not repelled", name);
                 prop_assert!(answer.energy > 0.0 && answer.energy <= overlap * overlap);
                 Ok(answer.force.length() / overlap)
@@ -132,11 +161,15 @@ proptest! {
                 contact: Contact {
                     normal: -case.contact.normal,
                     relative_velocity: -case.contact.relative_velocity,
+                    spin: -case.contact.spin,
                     ..case.contact
                 },
-                history: TangentialHistory {
-                    displacement: -case.history.displacement,
-                    rate: -case.history.rate,
+                history: GeneralHistory {
+                    friction: TangentialHistory {
+                        displacement: -case.history.friction.displacement,
+                        rate: -case.history.friction.rate,
+                        ..case.history.friction
+                    },
                     ..case.history
                 },
                 ..case
@@ -145,7 +178,9 @@ proptest! {
             prop_assert_eq!(here.force, -there.force, "{}", name);
             prop_assert_eq!(here.torque_per_arm, there.torque_per_arm, "{}", name);
             prop_assert_eq!(here.energy, there.energy);
-            prop_assert_eq!(history_here.displacement, -history_there.displacement);
+            prop_assert_eq!(here.rolling.couple, -there.rolling.couple, "{}", name);
+            prop_assert_eq!(history_here.friction.displacement, -history_there.friction.displacement);
+            prop_assert_eq!(history_here.rolling.displacement, history_there.rolling.displacement);
         }
     }
 
@@ -155,13 +190,21 @@ proptest! {
             let (found, _) = ask(&model, &case);
             let normal = case.contact.normal;
             let lateral = found.tangential.force;
+            let pressed = pressing(&model, &case.contact, found.force.dot(normal));
+            let couple = found.rolling.couple;
+            prop_assert!(couple.dot(normal).abs() <= 1e-14, "{}", name);
+            match model.rolling {
+                None => prop_assert_eq!(couple, DVec3::ZERO),
+                Some(law) => prop_assert!(
+                    couple.length()
+                        <= law.rolling_friction * pressed * case.contact.reduced_radius * (1.0 + 1e-9),
+                    "{}", name,
+                ),
+            }
             match model.friction {
                 None => prop_assert!(close(found.force, found.force.dot(normal) * normal, 1e-14), "{}", name),
                 Some(law) => {
                     prop_assert!(lateral.dot(normal).abs() <= 1e-14, "{}", name);
-                    let pressed = normal_force(
-                        model.normal, &case.contact, case.contact.normal_velocity(),
-                    ).force.max(0.0);
                     let bound = if found.tangential.sliding { law.kinetic_friction } else { law.static_friction };
                     prop_assert!(lateral.length() <= bound * pressed * (1.0 + 1e-12), "{}", name);
                     if found.tangential.sliding {
@@ -183,11 +226,12 @@ proptest! {
                     normal: turn * case.contact.normal,
                     relative_velocity: turn * case.contact.relative_velocity,
                     rotation: turn * case.contact.rotation,
+                    spin: turn * case.contact.spin,
                     ..case.contact
                 },
-                history: TangentialHistory {
-                    displacement: turn * case.history.displacement,
-                    rate: turn * case.history.rate,
+                history: GeneralHistory {
+                    friction: turned(turn, case.history.friction),
+                    rolling: turned(turn, case.history.rolling),
                     ..case.history
                 },
                 ..case
@@ -196,7 +240,9 @@ proptest! {
             prop_assert!(close(found.force, turn * plain.force, 1e-13), "{}", name);
             prop_assert!(close(found.torque_per_arm, turn * plain.torque_per_arm, 1e-13), "{}", name);
             prop_assert!((found.energy - plain.energy).abs() < 1e-13);
-            prop_assert!(close(history_found.displacement, turn * history_plain.displacement, 1e-13));
+            prop_assert!(close(found.rolling.couple, turn * plain.rolling.couple, 1e-13), "{}", name);
+            let displacement = |history: GeneralHistory| history.friction.displacement;
+            prop_assert!(close(displacement(history_found), turn * displacement(history_plain), 1e-13));
         }
     }
 
@@ -234,10 +280,12 @@ proptest! {
             let contact = Contact {
                 relative_velocity: rotation.cross(case.contact.distance * normal),
                 rotation: case.contact.distance * rotation,
+                spin: DVec3::ZERO,
                 ..case.contact
             };
-            let found = answer(&model, &contact, &mut TangentialHistory::default(), case.time_step);
+            let found = answer(&model, &contact, &mut GeneralHistory::default(), case.time_step);
             prop_assert!(found.tangential.force.length() < 1e-15, "{}", name);
+            prop_assert_eq!(found.rolling.couple, DVec3::ZERO, "{}", name);
         }
     }
 
@@ -301,13 +349,13 @@ proptest! {
     fn without_pressure_there_is_no_friction_and_no_memory(case in case()) {
         for sliding in common::SLIDINGS {
             let law = common::friction(sliding);
-            let mut history = case.history;
+            let mut history = case.history.friction;
             let stored = law.stored_energy(&history);
             let found = law.force(&case.contact, 0.0, &mut history, case.time_step);
             prop_assert_eq!(found.force, DVec3::ZERO);
             prop_assert_eq!(found.energy, 0.0, "{:?}", sliding);
             prop_assert_eq!(history.displacement, DVec3::ZERO, "{:?}", sliding);
-            let expected = stored + 0.5 * case.time_step * case.history.power;
+            let expected = stored + 0.5 * case.time_step * case.history.friction.power;
             prop_assert!((found.damped + found.slid - expected).abs() < 1e-14);
         }
     }
@@ -326,17 +374,18 @@ proptest! {
                 normal,
                 relative_velocity: rotation.cross(distance * normal),
                 rotation: distance * rotation,
+                spin: DVec3::ZERO,
                 ..case.contact
             }
         };
-        let mut history = TangentialHistory { rate: DVec3::ZERO, ..case.history };
+        let mut history = TangentialHistory { rate: DVec3::ZERO, ..case.history.friction };
         law.force(&at(0.0), 1.0, &mut history, 0.0);
         for step in 1..=steps {
             law.force(&at(f64::from(step) * time_step), 1.0, &mut history, time_step);
         }
         // Turned with the normal, and about it only as parallel transport does: never.
         prop_assert!(history.displacement.dot(at(1.0).normal).abs() < 1e-14);
-        let change = history.displacement.length() / case.history.displacement.length();
+        let change = history.displacement.length() / case.history.friction.displacement.length();
         prop_assert!((change - 1.0).abs() < 1e-5, "{change}");
     }
 }

@@ -43,6 +43,7 @@ impl OnPlane {
             relative_velocity: DVec3::new(self.velocity, 0.0, 0.0),
             reduced_radius: 0.5,
             rotation: 0.5 * DVec3::new(0.0, self.angular_velocity, 0.0),
+            spin: DVec3::ZERO,
         };
         self.last = self
             .law

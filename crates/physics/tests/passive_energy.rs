@@ -4,7 +4,9 @@ mod common;
 
 use common::{Collision, LINEAR, SLIDINGS, friction, hertz, normals, table};
 use glam::DVec3;
-use peristalsis_physics::contact::{ContactModel, CundallStrack, DissipationForm, Normal, Sliding};
+use peristalsis_physics::contact::{
+    ContactModel, CundallStrack, DissipationForm, Normal, RollingResistance, Sliding,
+};
 use proptest::prelude::*;
 
 const TIME_STEP: f64 = 2e-3;
@@ -60,7 +62,7 @@ proptest! {
     ) {
         for (name, normal) in normals() {
             for friction in [law, friction(Sliding::default())] {
-                let mut spheres = Collision::oblique(ContactModel { normal, friction: Some(friction) }, speed, angle);
+                let mut spheres = Collision::oblique(ContactModel::new(normal, Some(friction)), speed, angle);
                 spheres.mass[1] = ratio;
                 spheres.angular_velocity = [4.0 * speed * spins.0, 4.0 * speed * spins.1];
                 let found = gain(spheres);
@@ -76,7 +78,7 @@ proptest! {
         law in any_friction(), angle in 0.0..1.57, speed in 0.01..0.2, spins in (spin(), spin()),
     ) {
         for (name, normal) in normals() {
-            let mut spheres = Collision::oblique(ContactModel { normal, friction: Some(law) }, speed, angle);
+            let mut spheres = Collision::oblique(ContactModel::new(normal, Some(law)), speed, angle);
             spheres.angular_velocity = [4.0 * speed * spins.0, 4.0 * speed * spins.1];
             let start = spheres.kinetic_energy();
             let tolerance = 2e-5 * start;
@@ -112,10 +114,8 @@ fn the_literal_form_gains_energy() {
         (friction, 0.005..0.006),
     ] {
         for sliding in SLIDINGS {
-            let (found, degrees, speed) = largest_gain(ContactModel {
-                normal: printed,
-                friction: Some(law(sliding)),
-            });
+            let (found, degrees, speed) =
+                largest_gain(ContactModel::new(printed, Some(law(sliding))));
             println!("{sliding:?}: largest gain {found:.5} at {degrees} degrees, v = {speed}");
             if sliding == Sliding::Literal {
                 assert!(
@@ -130,10 +130,10 @@ fn the_literal_form_gains_energy() {
             }
         }
     }
-    let linear = largest_gain(ContactModel {
-        normal: Normal::Linear(LINEAR),
-        friction: Some(without_dashpot(Sliding::Literal)),
-    });
+    let linear = largest_gain(ContactModel::new(
+        Normal::Linear(LINEAR),
+        Some(without_dashpot(Sliding::Literal)),
+    ));
     println!("linear, Literal: {linear:?}");
     assert!((0.019..0.023).contains(&linear.0));
 }
@@ -152,10 +152,7 @@ fn the_balance_form_can_gain_energy() {
         };
         let normal = Normal::Hertz(hertz(DissipationForm::Viscoelastic));
         let mut spheres = Collision::oblique(
-            ContactModel {
-                normal,
-                friction: Some(law),
-            },
+            ContactModel::new(normal, Some(law)),
             0.15,
             30.7_f64.to_radians(),
         );
@@ -204,7 +201,15 @@ fn the_ledger_of_a_contact_closes_to_order_two() {
                 kinetic_friction: coefficient,
                 ..law
             });
-            let model = ContactModel { friction, ..model };
+            let rolling = model.rolling.map(|law| RollingResistance {
+                rolling_friction: coefficient,
+                ..law
+            });
+            let model = ContactModel {
+                friction,
+                rolling,
+                ..model
+            };
             let found = [0.02, 0.01, 0.005].map(|time_step| residual(model, time_step));
             let order = libm::log2(found[1] / found[2]);
             println!("{name}, {state}: residuals {found:?}, order {order:.3}");

@@ -480,7 +480,7 @@ pub(crate) fn schema() -> String {
 /// --------
 /// >>> import peristalsis
 /// >>> peristalsis.presets()
-/// ['frictionless', 'frictionless-source', 'frictionless-fine', 'frictional', 'sand-pump', 'soft-robot']
+/// ['frictionless', 'frictionless-source', 'frictionless-fine', 'frictional', 'sand-pump', 'soft-robot', 'silo', 'oesophagus']
 #[pyfunction]
 pub(crate) fn presets() -> Vec<&'static str> {
     PRESETS.iter().map(|preset| preset.name).collect()

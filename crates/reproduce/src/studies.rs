@@ -120,6 +120,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("branches-fine"),
     study!("branches-coarse"),
     study!("branches-aligned"),
+    study!("branches-disordered"),
     study!("loop-coarse"),
     study!("loop-aligned"),
     study!("dense-jams"),
@@ -161,4 +162,10 @@ pub const STUDIES: &[StudyFile] = &[
     study!("elastic-frictionless"),
     study!("elastic-sensitivity"),
     study!("unjammed-frictionless").needing(Products::OfFirst),
+    study!("closure"),
+    study!("segments"),
+    study!("segments-wave"),
+    study!("silo"),
+    study!("silo-head"),
+    study!("silo-feed"),
 ];

@@ -26,6 +26,7 @@ pub(crate) const WALLS: &[Wall] = &[
     Wall::new("fine", 24, 26, STAGGERED),
     Wall::new("coarse", 12, 14, STAGGERED),
     Wall::new("aligned", 12, 14, "aligned"),
+    Wall::new("disordered", 16, 18, "disordered"),
 ];
 
 /// The arrangement that a name leaves out.

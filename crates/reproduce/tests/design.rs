@@ -159,6 +159,12 @@ fn what_is_wrong_in_a_design_is_named_with_its_line() {
             "less than a grain",
         ),
         (
+            HOSE.replace("diameter = 14e-3", "diameter = 14"),
+            "tube.diameter",
+            6,
+            "lengths are in metres",
+        ),
+        (
             HOSE.replace("material = \"glass\"", "friction = 0.3"),
             "grain.diameter",
             3,

@@ -11,13 +11,15 @@ use peristalsis_reproduce::textbook::{CASES, Case, Circumstances, Validation, ch
 use peristalsis_reproduce::{Check, Convergence, Finding, Prose, ReproduceError, Size};
 
 /// Cases of a few seconds in all; the others are for `peristalsis validate`.
-const FAST: [&str; 7] = [
+const FAST: [&str; 9] = [
     "normal-impact",
     "restitution",
     "viscoelastic",
     "spin",
     "slip-to-roll",
     "gravity",
+    "rolling",
+    "cohesion",
     "chain",
 ];
 

@@ -4,9 +4,9 @@ use glam::DVec3;
 use peristalsis_configuration::{
     Configuration, Control, InitialState, ScheduledParameter, WaveformName,
 };
-use peristalsis_engine::initial::{Packing, PackingReport, pack_unless, settle};
+use peristalsis_engine::initial::{Packing, PackingReport, diameters, pack_unless, settle};
 use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall, Scattered};
-use peristalsis_engine::{Bodies, Parameters, Simulation, Touching, Wall};
+use peristalsis_engine::{Bodies, OpenEnds, Parameters, Simulation, Touching, Wall};
 use peristalsis_observe::TubeShape;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 use peristalsis_physics::wall::{Arrangement, Lattice, Schedule};
@@ -43,19 +43,46 @@ pub(crate) fn assemble_unless(
     check_memory(configuration)?;
     let wall = walls(configuration);
     let packing = Packing {
-        number: configuration.grains.number as usize,
-        diameter_min: configuration.grains.diameter_min,
-        diameter_max: configuration.grains.diameter_max,
+        number: packed_grains(configuration),
+        sizes: configuration.grains.distribution(),
         state: configuration.initial.state,
         axial_velocity: wall.heading() * configuration.initial.axial_velocity,
         seed: configuration.run.seed,
     };
     let (bodies, report) = pack_unless(&packing, &wall, configuration.contact.normal, stop)?;
     let parameters = parameters(configuration);
-    if configuration.initial.state == InitialState::Settled {
-        return Ok(settle(bodies, wall, parameters, report, stop)?);
-    }
-    Ok((Simulation::new(bodies, wall, parameters), report))
+    let (simulation, report) = match configuration.initial.state {
+        InitialState::Settled => settle(bodies, wall, parameters, report, stop)?,
+        _ => (Simulation::new(bodies, wall, parameters), report),
+    };
+    let all = diameters(&packing, configuration.grains.number as usize);
+    Ok((
+        opened(simulation, configuration, &all[packing.number..])?,
+        report,
+    ))
+}
+
+/// Grains that are in the tube, or between its ends, when it is made.
+fn packed_grains(configuration: &Configuration) -> usize {
+    let waiting = configuration.inlet.map_or(0, |inlet| inlet.waiting);
+    (configuration.grains.number - waiting) as usize
+}
+
+/// The simulation with its ends open, where they are, and with the grains of these diameters that wait.
+fn opened(
+    simulation: Simulation,
+    configuration: &Configuration,
+    waiting: &[f64],
+) -> Result<Simulation, RunError> {
+    let Some(inlet) = configuration.inlet else {
+        return Ok(simulation);
+    };
+    let ends = OpenEnds {
+        heading: configuration.heading(),
+        inlet,
+        seed: configuration.run.seed,
+    };
+    Ok(simulation.open(ends, waiting)?)
 }
 
 /// Refuses so many grains that packing them is not tried.
@@ -97,10 +124,10 @@ pub(crate) fn place(
         velocities,
         diameters,
     } = grains;
-    let number = configuration.grains.number as usize;
+    let number = packed_grains(configuration);
     if [positions.len(), velocities.len(), diameters.len()] != [number; 3] {
         return refused(format!(
-            "grains.number is {number}, and there are {} positions, {} velocities and {} diameters",
+            "{number} grains are to be placed, and there are {} positions, {} velocities and {} diameters",
             positions.len(),
             velocities.len(),
             diameters.len()
@@ -123,7 +150,10 @@ pub(crate) fn place(
     wall.append_spheres(&mut bodies);
     let simulation = Simulation::new(bodies, wall, parameters(configuration));
     check_places(&simulation)?;
-    Ok(simulation)
+    let grains = &configuration.grains;
+    let mean = 0.5 * (grains.diameter_min + grains.diameter_max);
+    let waiting = grains.number as usize - number;
+    opened(simulation, configuration, &vec![mean; waiting])
 }
 
 /// Refuses grains outside the tube, and those that share most of their place with another sphere.
@@ -245,6 +275,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
                     radius,
                     tube.arrangement_seed,
                 )),
+                Arrangement::Smooth => wall.smooth(),
                 Arrangement::File => {
                     let angles = tube.angles.iter().copied();
                     let places = tube.places.iter().copied();

@@ -165,6 +165,10 @@ impl RunError {
                  wall.keep.axial and the other tethers, wall.drag, wall.spring_damping, wall.spring_stiffness, \
                  drive.force_amplitude",
             ),
+            Self::Engine(EngineError::Diverged { outside: true, .. }) => Some(
+                "it slipped through the wall and fell or flew on: take more wall spheres (tube.spheres_per_ring, \
+                 tube.rings_per_wave), stiffer contacts, or fewer or larger grains",
+            ),
             Self::Engine(EngineError::Diverged { .. }) => {
                 Some("take a shorter run.time_step, or softer or fewer grains")
             }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use peristalsis_configuration::{Configuration, Control, Grains};
+use peristalsis_configuration::{Configuration, Control, Kernel};
 use peristalsis_engine::{Instructions, processors, threads_that_pay};
 use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
@@ -75,6 +75,11 @@ pub struct Estimate {
     pub expected_seconds: f64,
     /// Threads with which the trial was computed.
     pub threads: usize,
+    /// The kernel that computes the forces.
+    pub kernel: Kernel,
+    /// What it alone computes of this run, where it is the reference kernel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reference_only: Option<&'static str>,
     /// Bytes of memory, about.
     pub memory_bytes: f64,
     /// The size of the trajectory, if one is wanted.
@@ -146,6 +151,8 @@ pub fn estimate_by(
         packing_seconds: trial.packing_seconds,
         expected_seconds: trial.expected_seconds,
         threads,
+        kernel: configuration.run.kernel,
+        reference_only: configuration.reference_only(),
         memory_bytes: memory(configuration),
         trajectory,
         warnings,
@@ -159,12 +166,7 @@ fn in_the_end(warning: Warning) -> Warning {
 
 /// e of two grains of the mean diameter that meet at the speed of the wave.
 pub fn restitution_at_wave_speed(configuration: &Configuration) -> f64 {
-    let Grains {
-        diameter_min,
-        diameter_max,
-        ..
-    } = configuration.grains;
-    let diameter = 0.5 * (diameter_min + diameter_max);
+    let diameter = configuration.grains.distribution().mean(1);
     let impact = Impact::of_twins(diameter, configuration.wave_speed());
     configuration.contact.normal.rebound(impact).restitution
 }
@@ -232,6 +234,9 @@ fn trial_steps(configuration: &Configuration) -> u64 {
 fn smaller(configuration: &Configuration) -> (Configuration, f64, bool) {
     let mut trial = configuration.clone();
     let mut scale = 1.0;
+    if configuration.inlet.is_some() {
+        return (trial, scale, true);
+    }
     if trial.grains.number > TRIAL_GRAINS {
         let waves = trial.tube.waves;
         let per_wave = trial.grains.number as f64 / f64::from(waves);

@@ -12,7 +12,7 @@ use crate::error::RunError;
 use crate::pictures;
 use crate::run::Run;
 use crate::summary::Summary;
-use crate::tables::{profile_table, timeseries_table, waves_table};
+use crate::tables::{profile_table, timeseries_table, transit_table, waves_table};
 use crate::trajectory::Trajectory;
 
 const CONFIGURATION: &str = RunFolder::CONFIGURATION;
@@ -21,15 +21,17 @@ const TIMESERIES: &str = "timeseries.parquet";
 const TIMESERIES_CSV: &str = "timeseries.csv";
 const PROFILE: &str = "profile.parquet";
 const WAVES: &str = "waves.parquet";
+const TRANSIT: &str = "transit.parquet";
 const STATE: &str = "state.checkpoint";
 /// What a run may leave besides its figures and trajectories.
-const FILES: [&str; 7] = [
+const FILES: [&str; 8] = [
     CONFIGURATION,
     SUMMARY,
     TIMESERIES,
     TIMESERIES_CSV,
     PROFILE,
     WAVES,
+    TRANSIT,
     STATE,
 ];
 /// How files of figures end.
@@ -269,6 +271,9 @@ impl RunFolder {
         }
         parquet::write(&self.file(PROFILE), &profile_table(run)?)?;
         parquet::write(&self.file(WAVES), &waves_table(run)?)?;
+        if let Some(transit) = transit_table(run)? {
+            parquet::write(&self.file(TRANSIT), &transit)?;
+        }
         self.save_state(run)?;
         atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
         self.draw(run, summary).map(drop)

@@ -42,11 +42,12 @@ pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing
 pub use si::SiEstimate;
 pub use stopping::Stopping;
 pub use summary::{
-    Pumping, RowColumn, Status, Summary, SummaryKey, label, row_columns, set_by, summary_keys,
+    Discharge, Pumping, RowColumn, Status, Summary, SummaryKey, label, row_columns, set_by,
+    summary_keys,
 };
 pub use tables::{
     contacts_table, gathered, grains_table, profile_table, snapshot_table, timeseries_table,
-    waves_table,
+    transit_table, waves_table,
 };
 pub use trajectory::{
     FrameFile, FrameFormat, FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan,

@@ -41,6 +41,45 @@ pub fn waves_table(run: &Run) -> Result<Table, FormatError> {
     table(run, WAVES, run.recorder().waves())
 }
 
+/// A bin of the times that grains took from the inlet of an open tube to its outlet.
+pub(crate) struct TransitBin {
+    from: f64,
+    to: f64,
+    grains: u64,
+    density: f64,
+}
+
+/// The columns of the transit times.
+#[rustfmt::skip]
+const TRANSIT: &[Quantity<TransitBin>] = &[
+    Quantity::new("from", "t", "shortest transit time of the bin", Reading::Real(|b| b.from)),
+    Quantity::new("to", "t", "longest transit time of the bin", Reading::Real(|b| b.to)),
+    Quantity::new("grains", "1", "grains that took so long from the inlet to the outlet", Reading::Whole(|b| b.grains)),
+    Quantity::new("density", "1/t", "part of all of them, over the width of the bin", Reading::Real(|b| b.density)),
+];
+
+/// How long the grains of an open tube took from the inlet to the outlet, in the whole run: one row per bin; `None` of a
+/// periodic tube.
+///
+/// # Errors
+/// None that a caller can mend: the columns are of equal length.
+pub fn transit_table(run: &Run) -> Result<Option<Table>, FormatError> {
+    let Some(ends) = run.simulation().ends() else {
+        return Ok(None);
+    };
+    let residence = ends.residence();
+    let (width, bins) = residence.distribution();
+    let all = residence.number() as f64;
+    let bin = |(place, &grains): (usize, &u64)| TransitBin {
+        from: place as f64 * width,
+        to: (place + 1) as f64 * width,
+        grains,
+        density: grains as f64 / (all * width),
+    };
+    let bins: Vec<TransitBin> = bins.iter().enumerate().map(bin).collect();
+    table(run, TRANSIT, &bins).map(Some)
+}
+
 /// The spheres as they stand: one row each, grains first, then those of an elastic wall.
 ///
 /// # Errors
@@ -133,6 +172,9 @@ fn applies(scope: Scope, configuration: &Configuration) -> bool {
         Scope::Always => true,
         Scope::Friction => configuration.contact.friction.is_some(),
         Scope::BodyForce => configuration.has_body_force(),
+        Scope::Rolling => configuration.contact.rolling.is_some(),
+        Scope::Cohesion => configuration.contact.cohesion.is_some(),
+        Scope::OpenTube => configuration.inlet.is_some(),
         Scope::ElasticWall => matches!(configuration.drive.control, Control::Stress { .. }),
     }
 }

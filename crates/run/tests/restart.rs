@@ -23,6 +23,11 @@ fn models() -> Vec<(&'static str, String)> {
         ("frictionless", format!("{STRAIN} {against}")),
         ("frictional", format!("{STRESS} {against}")),
     ];
+    // Through open ends, with and without friction.
+    let open = "tube.ends=open inlet.waiting=4 inlet.velocity=0.1 drive.body_force=0.002";
+    for friction in ["", FRICTION] {
+        models.push(("frictionless", format!("{STRAIN} {open} {friction}")));
+    }
     let sizes = "grains.diameter_min=0.8 grains.diameter_max=1";
     for integrator in ["run.integrator=verlet", "run.integrator=adams_bashforth"] {
         for law in ["contact.law=linear", "contact.law=hertz"] {
@@ -75,6 +80,7 @@ fn a_state_goes_on_to_the_same_bits() {
             parts.recorder().dispersion(),
             "{preset} {settings}"
         );
+        assert_eq!(whole.simulation().ends(), parts.simulation().ends());
         assert!(whole.simulation().step() > 300);
     }
 }

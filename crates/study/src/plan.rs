@@ -18,7 +18,7 @@ pub enum SettingValue {
     Number(f64),
     /// A whole number.
     Whole(i64),
-    /// A name.
+    /// A name, or a list of numbers as it is written in TOML.
     Text(String),
     /// True or false.
     Boolean(bool),
@@ -31,6 +31,10 @@ impl SettingValue {
             Node::Float(number) => Self::Number(*number),
             Node::Boolean(boolean) => Self::Boolean(*boolean),
             Node::Text(text) => Self::Text(text.clone()),
+            Node::Array(items) => {
+                let numbers = items.iter().map(|item| Self::of(&item.node).to_string());
+                Self::Text(format!("[{}]", numbers.collect::<Vec<_>>().join(", ")))
+            }
             other => unreachable!("no value of an axis is {}", other.description()),
         }
     }

@@ -158,16 +158,13 @@ pub(crate) fn of_run(head: &Head, run: &Run, contacts: &[f64]) -> Vec<u8> {
         &[]
     };
     let wall = run.simulation().wall();
-    let known = known_rings(wall);
+    let drawn = wall.drawn(run.simulation().time());
+    let wall = drawn.as_ref().unwrap_or(wall);
     let mut of_wall = mobile.to_vec();
-    if known.is_none() {
+    if known_rings(wall).is_none() {
         of_wall.extend(wall.prescribed_spheres().map(|sphere| sphere.position));
     }
-    let rings: Vec<f64> = known.and(wall.wave()).map_or_else(Vec::new, |wave| {
-        let spacing = wall.wavelength() / head.rings as f64;
-        let places = (0..head.rings).map(|ring| ring as f64 * spacing);
-        places.map(|z| wave.radius(z, wall.cycles())).collect()
-    });
+    let rings = radii(wall);
     let arrays: [&[f64]; 7] = [
         &flat(of_grains),
         &flat(&velocity[..*grains]),
@@ -186,25 +183,39 @@ pub(crate) fn known_rings(wall: &Wall) -> Option<&Lattice> {
     wall.lattice().filter(|lattice| lattice.staggered)
 }
 
-/// How many spheres of a wall, and radii of its rings, a frame holds.
+/// Radii of the rings of a wavelength as a wall stands, where the page knows the rest.
+pub(crate) fn radii(wall: &Wall) -> Vec<f64> {
+    let (Some(lattice), Some(wave)) = (known_rings(wall), wall.wave()) else {
+        return Vec::new();
+    };
+    let places = (0..lattice.rings_per_wave).map(|ring| lattice.axial_position(ring));
+    places.map(|z| wave.radius(z, wall.cycles())).collect()
+}
+
+/// How many spheres of a wall, and radii of its rings, a frame holds; of a smooth wall those that are drawn.
 pub(crate) fn of_wall(wall: &Wall) -> (usize, usize) {
-    match known_rings(wall) {
+    let drawn = wall.drawn(0.0);
+    match known_rings(drawn.as_ref().unwrap_or(wall)) {
         Some(lattice) => (0, lattice.rings_per_wave as usize),
         None => (wall.mobile_spheres() + wall.prescribed_spheres().count(), 0),
     }
 }
 
 #[cfg(feature = "server")]
-/// A recorded frame; a prescribed wall has so many spheres per ring.
-pub(crate) fn of_recording(head: &Head, frame: &Frame, spheres_per_ring: usize) -> Vec<u8> {
+/// A recorded frame of a run with such a wall.
+pub(crate) fn of_recording(head: &Head, frame: &Frame, wall: &Wall) -> Vec<u8> {
     let grains = frame.grains;
     let spin = frame.rotation.as_ref();
-    let rings: Vec<f64> = (0..head.rings)
-        .map(|ring| {
-            let [x, y, _] = frame.position[grains + ring * spheres_per_ring];
-            (x * x + y * y).sqrt()
-        })
-        .collect();
+    let per_ring = wall.lattice().map_or(0, |it| it.spheres_per_ring) as usize;
+    let rings = match wall.drawn(frame.time) {
+        Some(drawn) => radii(&drawn),
+        None => (0..head.rings)
+            .map(|ring| {
+                let [x, y, _] = frame.position[grains + ring * per_ring];
+                (x * x + y * y).sqrt()
+            })
+            .collect(),
+    };
     let of_wall = &frame.position[frame.position.len() - head.wall_spheres..];
     let arrays = [
         frame.position[..grains].as_flattened(),

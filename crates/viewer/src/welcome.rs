@@ -102,6 +102,8 @@ impl Welcome {
         grains: usize,
         title: &str,
     ) -> Self {
+        let drawn = wall.drawn(0.0);
+        let wall = drawn.as_ref().unwrap_or(wall);
         let lattice = wall.lattice();
         let ranges = Ranges::of(configuration);
         let timeline = Timeline(configuration);
@@ -120,7 +122,9 @@ impl Welcome {
             waves: wall.waves(),
             radius: configuration.tube.radius,
             spheres_per_ring: lattice.map_or(0, |lattice| lattice.spheres_per_ring),
-            rings_per_wave: configuration.tube.rings_per_wave,
+            rings_per_wave: lattice.map_or(configuration.tube.rings_per_wave, |lattice| {
+                lattice.rings_per_wave
+            }),
             wall_sphere_diameter: wall.sphere_diameter(),
             heading: wall.heading(),
             reach: 2.0 * configuration.tube.radius,

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use peristalsis_configuration::Kernel;
 use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
@@ -34,8 +35,11 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             estimate.grains, estimate.volume_fraction, estimate.number_density
         ),
         format!(
-            "wall              {} spheres along {} d",
-            estimate.wall_spheres,
+            "wall              {} along {} d",
+            match estimate.wall_spheres {
+                0 => "smooth".to_owned(),
+                spheres => format!("{spheres} spheres"),
+            },
             rounded(estimate.length)
         ),
         match (estimate.period, estimate.periods) {
@@ -101,7 +105,7 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         }
         if si.body_force_m_per_s2 != 0.0 {
             lines.push(format!(
-                "                  body force {} m/s^2, a pressure rise of {} Pa over a wavelength",
+                "                  body force {} m/s^2 along the wave, weight included: a pressure rise of {} Pa over a wavelength",
                 significant(si.body_force_m_per_s2, 4),
                 significant(si.pressure_rise_pa, 4)
             ));
@@ -111,6 +115,14 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
     lines.push(format!(
         "expected time     {expected}, after {packing} of packing"
     ));
+    let kernel = match estimate.reference_only {
+        Some(what) => format!("reference, for it alone computes {what}"),
+        None => match estimate.kernel {
+            Kernel::Fast => "fast".to_owned(),
+            Kernel::Reference => "reference".to_owned(),
+        },
+    };
+    lines.push(format!("kernel            {kernel}"));
     lines.push(format!(
         "threads           {}, as many as pay here for its size",
         estimate.threads

@@ -51,18 +51,19 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
         Some(text) => Configuration::from_toml("design", text)?,
         None => configuration(sources)?,
     };
+    // Before anything is tried or written.
+    if !Design::serves(&configuration) {
+        return Err(no_design());
+    }
     if let Some(path) = &arguments.write {
         say_if_replaced(path);
         let text = text.unwrap_or_else(|| configuration.to_toml());
         fs::write(path, text).map_err(Failure::write(path))?;
     }
     let estimate = estimate(&configuration, None).map_err(|error| locate(error, sources))?;
-    let design = Design::of(&configuration, estimate).ok_or_else(|| {
-        Failure::usage(
-            "a design is of a wave that moves in a prescribed wall",
-            "drive.control = \"strain\" with a drive.strain_rate above 0",
-        )
-    })?;
+    let Some(design) = Design::of(&configuration, estimate) else {
+        return Err(no_design());
+    };
     if let Some(path) = &arguments.html {
         say_if_replaced(path);
         let name = crate::sources::name(sources);
@@ -70,6 +71,13 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
         fs::write(path, page).map_err(Failure::write(path))?;
     }
     print_report(arguments.json, &design, || in_words(&design))
+}
+
+fn no_design() -> Failure {
+    Failure::usage(
+        "a design is of a wave that moves in a prescribed wall",
+        "drive.control = \"strain\" with a drive.strain_rate above 0",
+    )
 }
 
 /// The configuration of the file of a design; `None` where the file is a configuration itself.

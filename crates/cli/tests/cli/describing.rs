@@ -2,13 +2,15 @@
 
 use crate::Place;
 
-const PRESETS: [&str; 6] = [
+const PRESETS: [&str; 8] = [
     "frictionless",
     "frictionless-source",
     "frictionless-fine",
     "frictional",
     "sand-pump",
     "soft-robot",
+    "silo",
+    "oesophagus",
 ];
 
 #[test]

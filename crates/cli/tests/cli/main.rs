@@ -193,7 +193,8 @@ impl Place {
         }
     }
 
-    /// Every file below, with content and time of change; folders with neither.
+    /// Every file below, with content and time of change; folders with neither. A file that a running program puts in
+    /// place meanwhile may be missing.
     fn inventory(&self) -> Inventory {
         let mut found = Inventory::new();
         collect(self.folder.path(), self.folder.path(), &mut found);
@@ -211,8 +212,13 @@ fn collect(root: &Path, folder: &Path, found: &mut Inventory) {
             found.insert(name, None);
             collect(root, &path, found);
         } else {
-            let changed = path.metadata().unwrap().modified().unwrap();
-            found.insert(name, Some((std::fs::read(&path).unwrap(), changed)));
+            let read = || Ok((std::fs::read(&path)?, path.metadata()?.modified()?));
+            match read() {
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
+                file => {
+                    found.insert(name, Some(file.unwrap()));
+                }
+            }
         }
     }
 }

@@ -29,7 +29,7 @@ pub(super) fn damped(
     };
     let wave_speed = drive.strain_rate * keys.tube.tube.wavelength;
     let speed = keys.contact.restitution_speed.unwrap_or(wave_speed);
-    let diameter = 0.5 * (grains.diameter_min + grains.diameter_max);
+    let diameter = grains.distribution().mean(1);
     let normal = contact
         .normal
         .with_restitution(restitution, Impact::of_twins(diameter, speed));

@@ -2,7 +2,7 @@
 
 use super::{Context, plain, schedules};
 use peristalsis_physics::wall::table::MOST_POINTS;
-use peristalsis_physics::wall::{LONGEST_CYCLE, RadiusTable, SegmentDrive, Segments};
+use peristalsis_physics::wall::{Arrangement, LONGEST_CYCLE, RadiusTable, SegmentDrive, Segments};
 
 use crate::configuration::{Control, Drive, Tube};
 use crate::error::ProblemKind;
@@ -54,7 +54,7 @@ fn segments(drive: &Drive, tube: &Tube, context: &mut Context<'_>) -> Option<Opt
             "drive.control = \"strain\", or a waveform that travels: \"sine\", \"bolus\" or \"roller\"".into(),
         );
     }
-    if tube.rings_per_wave < 2 * number {
+    if tube.arrangement != Arrangement::Smooth && tube.rings_per_wave < 2 * number {
         return context.refuse(
             kind,
             &["drive.segments", "tube.rings_per_wave"],

@@ -1,23 +1,25 @@
 //! From layers of keys to one resolved configuration.
 
 mod body;
+mod contact;
 mod damping;
 mod drive;
 mod grains;
+mod inlet;
+mod kernel;
 mod run;
 mod schedules;
 mod spheres;
 mod tube;
 mod units;
 
-use peristalsis_physics::contact::ContactModel;
 use peristalsis_physics::method::InitialState;
 
 use crate::configuration::{Configuration, Control, FIRST_SEED, Wall};
 use crate::contract;
 use crate::document::{self, Table};
 use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
-use crate::keys::{ALTERNATIVES, ContactKeys, Keys};
+use crate::keys::{ALTERNATIVES, Keys, RINGS};
 use crate::layers::{self, list};
 use crate::materials;
 use crate::presets::{PRESETS, Preset, preset};
@@ -69,6 +71,9 @@ impl Configuration {
         problems.check()?;
         spheres::read(&mut table, &mut problems);
         problems.check()?;
+        if layers::is_smooth(&table) {
+            tube::without_rings(&mut table);
+        }
         let keys = deserialised(&table)?;
         let mut context = Context {
             table: &table,
@@ -246,7 +251,8 @@ fn check_given(table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
 fn missing(table: &Table) -> Vec<String> {
     let given = |key: &str| document::entry(table, key).is_some();
     let mut missing = schema::REQUIRED.to_vec();
-    missing.retain(|key| !given(key));
+    let is_smooth = layers::is_smooth(table);
+    missing.retain(|key| !(given(key) || is_smooth && RINGS.contains(&key.as_str())));
     let groups = ALTERNATIVES.iter().filter(|group| {
         layers::has_meaning(table, group[0]) && !group.iter().any(|key| given(key))
     });
@@ -337,12 +343,13 @@ fn shown(origin: &Origin) -> String {
 }
 
 fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration> {
-    let contact = contact(keys.contact, context);
+    let contact = contact::contact(keys.contact, context);
     let mut tube = keys.tube.tube.clone();
     if !tube.arrangement.is_drawn() {
         tube.arrangement_seed = FIRST_SEED;
     }
     tube::check_lattice(&tube, &keys.drive.drive.control, context);
+    tube::check_sphere_diameter(&tube, keys.wall.sphere_diameter, context);
     let grains = grains::grains(&keys.grains, &tube, context);
     if let Some(grains) = &grains {
         let reach = grains.diameter_max.max(keys.wall.sphere_diameter);
@@ -352,8 +359,18 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     let units = contact.and_then(|contact| units::units(&keys.units, &contact, context));
     let drive = drive::drive(&keys, units.flatten().as_ref(), context);
     let body = units.and_then(|units| body::body(&keys, units.as_ref(), context));
+    let inlet = match (&grains, units) {
+        (Some(grains), Some(units)) => inlet::inlet(&keys, grains, units.as_ref(), context),
+        _ => None,
+    };
     let run = match (&drive, &grains) {
         (Some(drive), Some(grains)) => run::run(keys.run, drive, grains, &keys.observe, context),
+        _ => None,
+    };
+    let contact = match (contact, &units) {
+        (Some(contact), Some(units)) => {
+            contact::with_cohesion_in_si(contact, &keys.units, units.as_ref(), context)
+        }
         _ => None,
     };
     let contact = match (contact, &drive, &grains) {
@@ -369,6 +386,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
         tube,
         drive: drive?,
         wall: wall(&keys, context),
+        inlet: inlet?,
         initial: keys.initial,
         run: run?,
         observe: keys.observe,
@@ -381,6 +399,8 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
         configuration.natural_axial_velocity()
     };
     check_settling(&configuration, context);
+    inlet::check_direction(&configuration, context);
+    kernel::choose(&mut configuration, context);
     Some(configuration)
 }
 
@@ -406,30 +426,6 @@ fn check_settling(configuration: &Configuration, context: &mut Context<'_>) {
                 .into(),
         );
     }
-}
-
-fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel> {
-    let (normal, mut friction) = (keys.normal, keys.friction);
-    // Of the two coefficients one stands for both.
-    if !context.given("contact.static_friction") {
-        friction.static_friction = friction.kinetic_friction;
-    } else if !context.given("contact.kinetic_friction") {
-        friction.kinetic_friction = friction.static_friction;
-    }
-    let (kinetic_friction, static_friction) = (friction.kinetic_friction, friction.static_friction);
-    if kinetic_friction > static_friction {
-        let keys = ["contact.kinetic_friction", "contact.static_friction"];
-        let message = format!(
-            "{} = {kinetic_friction} is above {} = {static_friction}",
-            keys[0], keys[1]
-        );
-        let help = format!(
-            "kinetic friction is at most the static one: set contact.kinetic_friction to at most {static_friction} (both to 0 for frictionless grains)"
-        );
-        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
-    }
-    let friction = (static_friction > 0.0).then_some(friction);
-    Some(ContactModel { normal, friction })
 }
 
 /// Natural length of a wall spring over the mean distance of lattice neighbours.

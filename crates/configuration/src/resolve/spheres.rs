@@ -1,4 +1,4 @@
-//! Numbers that the user gives in a file: places of wall spheres, the shape of a wave.
+//! Numbers that the user gives in a file: places of wall spheres, the shape of a wave, sizes of grains.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ struct FileKey {
     help: &'static str,
 }
 
-const FILES: [FileKey; 2] = [
+const FILES: [FileKey; 3] = [
     FileKey {
         table: "tube",
         name: "file",
@@ -31,6 +31,13 @@ const FILES: [FileKey; 2] = [
         columns: "phase,radius",
         into: ["phases", "radii"],
         help: "then one line per point: its phase, from 0 to below 1, and the radius there",
+    },
+    FileKey {
+        table: "grains",
+        name: "file",
+        columns: "diameter,fraction",
+        into: ["diameters", "fractions"],
+        help: "then one line per size: its diameter [d] and its part of the grains by number",
     },
 ];
 

@@ -4,8 +4,10 @@ use peristalsis_physics::wall::Arrangement;
 
 use super::{Context, spheres};
 use crate::configuration::{Control, Tube};
+use crate::document::{self, Item, Node, Table};
 use crate::error::ProblemKind;
-use crate::limits;
+use crate::keys::RINGS;
+use crate::{layers, limits};
 
 /// Whether the lattice closes and its size is sane.
 pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Context<'_>) {
@@ -31,6 +33,34 @@ pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Contex
         let help = format!("spheres_per_ring * rings_per_wave * waves is at most {most}");
         context.refuse::<()>(ProblemKind::OutOfRange, &keys, message, help);
     }
+}
+
+/// Notes that a smooth wall has no rings of spheres.
+pub(super) fn without_rings(table: &mut Table) {
+    let Some(origin) = document::entry(table, "tube.arrangement").map(|it| it.item.origin.clone())
+    else {
+        return;
+    };
+    for key in RINGS {
+        let item = Item {
+            origin: origin.clone(),
+            node: Node::Integer(0),
+        };
+        layers::merge(table, document::setting(key, &origin, item));
+    }
+}
+
+/// Spheres have a size; only the surface of a smooth wall may lie in its radius.
+pub(super) fn check_sphere_diameter(tube: &Tube, diameter: f64, context: &mut Context<'_>) {
+    if diameter > 0.0 || tube.arrangement == Arrangement::Smooth {
+        return;
+    }
+    context.refuse::<()>(
+        ProblemKind::OutOfRange,
+        &["wall.sphere_diameter", "tube.arrangement"],
+        "wall.sphere_diameter = 0: a wall of spheres needs spheres".to_owned(),
+        "a number above 0, or tube.arrangement = \"smooth\"".to_owned(),
+    );
 }
 
 /// Alternate rings are turned: the pattern closes at the seam of an even number of rings.
@@ -68,6 +98,9 @@ fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
 /// A grain meets each wall sphere within its reach at every step: there must not be more than can be gone through. Walls of too
 /// many spheres are refused already.
 pub(super) fn check_reach(tube: &Tube, reach: f64, context: &mut Context<'_>) {
+    if tube.arrangement == Arrangement::Smooth {
+        return;
+    }
     let (met, most) = (
         tube.wall_spheres_within(reach),
         limits::MOST_WALL_SPHERES_IN_REACH,

@@ -48,9 +48,13 @@ pub(super) fn units(
     } else {
         String::new()
     };
-    let mut keys = needed
-        .into_iter()
-        .chain(["units.wave_frequency", "units.acceleration"]);
+    let mut keys = needed.into_iter().chain([
+        "units.wave_frequency",
+        "units.acceleration",
+        "units.cohesion_force",
+        "units.surface_energy",
+        "units.feed_rate",
+    ]);
     let blamed = keys.find(given).unwrap_or(NEEDED[0]);
     context.refuse(
         ProblemKind::Missing,

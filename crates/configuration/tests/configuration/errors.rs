@@ -40,6 +40,9 @@ waves = 10 -> &\narrangement = "file"\nangles = [0]\nplaces = [-1] | OutOfRange 
 waves = 10 -> &\narrangement = "file"\nfile = "no-such.csv" | Inconsistent | tube.file | 10 | angle,place | no-such.csv
 waves = 10 -> &\narrangement = "file"\nfile = "a.csv"\nplaces = [0] | Conflict | tube.file | 10 11 | keep one of
 waves = 10 -> &\nfile = "a.csv"\narrangement = "random" | Conflict | tube.file | 9 10 | arrangement = "file"
+waves = 10 -> &\narrangement = "smooth"; rings_per_wave = 14 -> # none | Conflict | tube.spheres_per_ring | 10 9 | arrangement = "staggered", "aligned", "random", "disordered" or "file" | but here it is "smooth"
+control = "strain" -> control = "stress"; width = 2.75 -> force_amplitude = 0.004; waves = 10 -> &\narrangement = "smooth"; spheres_per_ring = 12 -> # none; rings_per_wave = 14 -> # none | Inconsistent | tube.arrangement | 9 | leave tube.arrangement out
+[run] -> [wall]\nsphere_diameter = 0\n[run] | OutOfRange | wall.sphere_diameter | 16 | tube.arrangement = "smooth" | needs spheres
 waves = 10 -> &\narrangement = "hexagonal" | WrongType | tube.arrangement | 9 | "staggered", "aligned", "random", "disordered"
 control = "strain" -> control = "stress"; width = 2.75 -> force_amplitude = 0.004; waves = 10 -> &\narrangement = "aligned" | Inconsistent | tube.arrangement | 9 | leave tube.arrangement out
 radius = 1.5 -> &\ncolour = 1 | UnknownKey | tube.colour | 7 | known here: angles, arrangement

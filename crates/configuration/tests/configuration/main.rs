@@ -1,8 +1,10 @@
 //! Configurations read from presets, files and overrides.
 
 mod errors;
+mod general;
 mod layers;
 mod materials;
+mod open;
 mod pumping;
 mod restitution;
 mod round_trip;

@@ -7,7 +7,7 @@ use crate::{only_problem, preset, read, schema_errors};
 
 /// e of two grains of a configuration that meet at a speed.
 fn restitution(configuration: &Configuration, speed: f64) -> f64 {
-    let grains = configuration.grains;
+    let grains = &configuration.grains;
     let diameter = 0.5 * (grains.diameter_min + grains.diameter_max);
     let rebound = configuration
         .contact

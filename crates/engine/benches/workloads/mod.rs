@@ -121,7 +121,7 @@ impl Workload {
                 let (packing, wall, contact) =
                     strain_controlled(COARSE, 0.225, 2.6, 0.05, InitialState::Rest);
                 let packing = Packing {
-                    diameter_min: 0.8,
+                    sizes: Sizes::Uniform([0.8, 1.0]),
                     ..packing
                 };
                 let contact = ContactModel {
@@ -147,15 +147,11 @@ fn strain_controlled(
     strain_rate: f64,
     state: InitialState,
 ) -> (Packing, Wall, ContactModel) {
-    let contact = ContactModel {
-        normal: LINEAR,
-        friction: None,
-    };
+    let contact = ContactModel::new(LINEAR, None);
     let packing = Packing {
         // rho = N/(6 a^2 L)
         number: (volume_fraction * 6.0 * RADIUS * RADIUS * lattice.length()).round() as usize,
-        diameter_min: 1.0,
-        diameter_max: 1.0,
+        sizes: Sizes::Uniform([1.0, 1.0]),
         state,
         axial_velocity: match state {
             InitialState::Rest | InitialState::Settled | InitialState::Placed => 0.0,
@@ -179,15 +175,11 @@ fn stress_controlled() -> (Packing, Wall, ContactModel) {
         wall.force_amplitude = Schedule::constant(0.004);
         wall.frequency = Schedule::constant(strain_rate);
     }));
-    let contact = ContactModel {
-        normal: HERTZ,
-        friction: Some(FRICTION),
-    };
+    let contact = ContactModel::new(HERTZ, Some(FRICTION));
     let packing = Packing {
         // n = N d*^3/(pi a^2 L)
         number: (0.71 * core::f64::consts::PI * 3.5 * 3.5 * lattice.length()).round() as usize,
-        diameter_min: 0.8,
-        diameter_max: 1.0,
+        sizes: Sizes::Uniform([0.8, 1.0]),
         state: InitialState::Jammed,
         axial_velocity: strain_rate * lattice.wavelength,
         seed: 1,

@@ -254,6 +254,10 @@ impl<M: Machine> Real for Lanes<M> {
         Self(M::sqrt(self.0))
     }
 
+    fn cube_root(self) -> Self {
+        Self::from_array(&self.to_array().map(libm::cbrt))
+    }
+
     #[inline(always)]
     fn less(self, other: Self) -> Mask<M> {
         Mask(M::less(self.0, other.0))

@@ -34,6 +34,14 @@ fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
     random
 }
 
+/// Diameters of the first so many grains, those of the packing first \[d\].
+pub fn diameters(packing: &Packing, number: usize) -> Vec<f64> {
+    let mut random = random(packing.seed, Stream::Diameters);
+    (0..number)
+        .map(|_| packing.sizes.diameter(uniform(&mut random)))
+        .collect()
+}
+
 /// Packs grains into the tube as it stands at t = 0; an elastic wall stands in its reference tube, and its spheres are
 /// appended to the grains.
 ///
@@ -62,11 +70,7 @@ pub fn pack_unless(
     normal: Normal,
     stop: &dyn Fn() -> bool,
 ) -> Result<(Bodies, PackingReport), EngineError> {
-    let mut diameters = random(packing.seed, Stream::Diameters);
-    let spread = packing.diameter_max - packing.diameter_min;
-    let diameter: Vec<f64> = (0..packing.number)
-        .map(|_| packing.diameter_min + spread * uniform(&mut diameters))
-        .collect();
+    let diameter = diameters(packing, packing.number);
     let region = insertion::Region::new(packing, wall);
     let mut positions = random(packing.seed, Stream::Positions);
     let (position, inserted) = insertion::insert(&diameter, &region, &mut positions, stop)?;

@@ -1,6 +1,7 @@
 //! What is to be packed, and how it came out.
 
 use peristalsis_physics::method::InitialState;
+use peristalsis_physics::sizes::Sizes;
 use rand_chacha::ChaCha8Rng;
 use rand_core::Rng;
 
@@ -8,14 +9,12 @@ use rand_core::Rng;
 pub const LARGEST_MEAN_OVERLAP: f64 = 0.5;
 
 /// The grains to be packed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
     /// Number of grains.
     pub number: usize,
-    /// Least diameter \[d\].
-    pub diameter_min: f64,
-    /// Largest diameter \[d\]; diameters are uniform between the two.
-    pub diameter_max: f64,
+    /// Their diameters.
+    pub sizes: Sizes,
     /// Where the grains are.
     pub state: InitialState,
     /// Velocity of all grains along z \[d/t\].

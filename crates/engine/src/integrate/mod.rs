@@ -100,6 +100,21 @@ fn end(scheme: impl Scheme<DVec3>, bodies: &mut Bodies, past: &Past) {
 }
 
 impl Past {
+    /// Lets a body that was put elsewhere have no other past than its present.
+    pub(crate) fn forget(&mut self, bodies: &Bodies, body: usize) {
+        let present = [
+            (&mut self.velocity, &bodies.velocity),
+            (&mut self.acceleration, &bodies.acceleration),
+            (&mut self.angular_velocity, &bodies.angular_velocity),
+            (&mut self.angular_acceleration, &bodies.angular_acceleration),
+        ];
+        for (past, present) in present {
+            if let Some(past) = past.get_mut(body) {
+                *past = present[body];
+            }
+        }
+    }
+
     fn remember_accelerations(&mut self, bodies: &Bodies) {
         self.acceleration.clone_from(&bodies.acceleration);
         self.angular_acceleration

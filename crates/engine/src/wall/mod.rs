@@ -26,7 +26,7 @@ use crate::bodies::{Bodies, Sphere};
     reason = "a tube has one, and asks it by reference"
 )]
 pub enum Wall {
-    /// Spheres that move as prescribed (strain control); found by arithmetic, never stored.
+    /// Spheres, or a smooth surface, that move as prescribed (strain control); found by arithmetic, never stored.
     Prescribed(PrescribedWall),
     /// Mobile spheres joined by springs (stress control); they are the last of the [`crate::Bodies`].
     Elastic(ElasticWall),
@@ -124,7 +124,7 @@ impl Wall {
         self.extent().1
     }
 
-    /// Diameter of the wall's spheres \[d\]: the wall's surface lies half of it inside its radius.
+    /// Diameter of the wall's spheres \[d\]: the wall's surface, also of a smooth wall, lies half of it inside its radius.
     pub fn sphere_diameter(&self) -> f64 {
         self.extent().2
     }
@@ -201,6 +201,12 @@ impl Wall {
             .flat_map(|wall| (0..wall.number()).map(|index| wall.sphere(index)))
     }
 
+    /// A smooth wall as it is drawn, as it stands at `time`: a lattice of beads whose inner side is its surface; `None` for
+    /// a wall of spheres.
+    pub fn drawn(&self, time: f64) -> Option<Self> {
+        self.prescribed()?.drawn(time).map(Self::Prescribed)
+    }
+
     /// Displacements of the mobile spheres from their reference places: (radial, azimuthal, axial) along the reference
     /// directions \[d\].
     pub fn displacements(&self, bodies: &Bodies) -> impl Iterator<Item = DVec3> {
@@ -243,12 +249,17 @@ impl Wall {
             .is_some_and(|wall| wall.may_touch(one, other))
     }
 
-    /// Calls `touch` for each contact of a grain with what of the wall no force moves: with the number of the wall's
-    /// sphere, the contact (the grain not rotating) and the velocity of the wall there.
+    /// Calls `touch` for each contact of a grain with what of the wall no force moves, or each gap up to `range`: with the
+    /// number of the wall's sphere, the contact (the grain not rotating) and the velocity of the wall there.
     #[inline(always)]
-    pub(crate) fn for_each_contact(&self, grain: &Sphere, touch: impl FnMut(u32, Contact, DVec3)) {
+    pub(crate) fn for_each_contact(
+        &self,
+        grain: &Sphere,
+        range: f64,
+        touch: impl FnMut(u32, Contact, DVec3),
+    ) {
         if let Self::Prescribed(wall) = self {
-            wall.for_each_contact(grain, touch);
+            wall.for_each_contact(grain, range, touch);
         }
     }
 
@@ -272,17 +283,27 @@ impl Wall {
             let remembered = grain - numbers.start;
             let sphere = grains.sphere(grain);
             let (mut force, mut torque) = grains.force(grain);
-            self.for_each_contact(&sphere, |number, mut contact, wall_velocity| {
+            let range = law.range(sphere.diameter);
+            self.for_each_contact(&sphere, range, |number, mut contact, wall_velocity| {
                 let arm = contact.arm(sphere.diameter);
                 let mut history = T::History::<f64>::default();
                 if T::ROTATES {
                     contact.rotation = arm * sphere.angular_velocity;
+                    contact.spin = sphere.angular_velocity;
                     history = memory.take(remembered, number);
+                }
+                if T::IS_GENERAL && !law.acts(&contact, &history) {
+                    sums.add_ended(law.tangential.stored_energy(&history));
+                    return sums.add_general(0.0, law.tangential.bond(&history));
                 }
                 let answer = law.force(&contact, &mut history, time_step);
                 if T::ROTATES {
                     memory.put(number, history);
                     torque += arm * answer.torque_per_arm;
+                }
+                if T::IS_GENERAL {
+                    torque += answer.rolling.couple;
+                    sums.add_general(answer.rolling.lost, 0.0);
                 }
                 force += answer.force;
                 sums.add(&WallTerms {
@@ -295,6 +316,9 @@ impl Wall {
             if T::ROTATES {
                 for ended in memory.end_grain(remembered) {
                     sums.add_ended(law.tangential.stored_energy(ended));
+                    if T::IS_GENERAL {
+                        sums.add_general(0.0, law.tangential.bond(ended));
+                    }
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 mod rings;
 mod scattered;
+mod smooth;
 
 use core::f64::consts::TAU;
 
@@ -11,6 +12,7 @@ use peristalsis_physics::wall::{Contraction, Lattice, RadiusWave, Ring, Schedule
 
 pub(crate) use self::rings::Rings;
 pub use self::scattered::Scattered;
+use self::smooth::Smooth;
 use crate::bodies::Sphere;
 
 /// Spheres whose distance from the axis follows a travelling wave.
@@ -33,6 +35,8 @@ pub struct PrescribedWall {
 enum WallSpheres {
     Rings(Rings),
     Scattered(Scattered),
+    /// There are none: the wall is smooth.
+    Smooth(Smooth),
 }
 
 /// A moment of the wave.
@@ -103,6 +107,28 @@ impl PrescribedWall {
         self
     }
 
+    /// The same wall without spheres: the smooth surface that lies half of their diameter, along its normal, inside the
+    /// radius R(z, t).
+    pub fn smooth(mut self) -> Self {
+        self.spheres = WallSpheres::Smooth(Smooth::new(&self.wave));
+        self
+    }
+
+    /// A smooth wall as it is drawn, at `time`: a fine lattice of beads whose inner side is its surface; `None` for a wall
+    /// of spheres.
+    pub(super) fn drawn(&self, time: f64) -> Option<Self> {
+        let WallSpheres::Smooth(_) = self.spheres else {
+            return None;
+        };
+        let mut wall = self.clone();
+        wall.wave.mean_radius += 0.5 * (smooth::BEAD - self.sphere_diameter);
+        let lattice = smooth::beads(&wall.wave, self.waves);
+        wall.sphere_diameter = lattice.sphere_diameter;
+        wall.spheres = WallSpheres::Rings(Rings::new(lattice, wall.wave.heading));
+        wall.move_to(time);
+        Some(wall)
+    }
+
     /// The same wall, standing still for ever as it is at time 0.
     pub(crate) fn at_rest(&self) -> Self {
         let mut still = self.clone();
@@ -151,7 +177,7 @@ impl PrescribedWall {
     pub(crate) fn rings(&self) -> Option<&Rings> {
         match &self.spheres {
             WallSpheres::Rings(rings) => Some(rings),
-            WallSpheres::Scattered(_) => None,
+            WallSpheres::Scattered(_) | WallSpheres::Smooth(_) => None,
         }
     }
 
@@ -167,6 +193,7 @@ impl PrescribedWall {
                 ours.lattice == theirs.lattice
             }
             (WallSpheres::Scattered(ours), WallSpheres::Scattered(theirs)) => ours == theirs,
+            (WallSpheres::Smooth(_), WallSpheres::Smooth(_)) => self.extent() == other.extent(),
             _ => false,
         }
     }
@@ -186,6 +213,7 @@ impl PrescribedWall {
         match &self.spheres {
             WallSpheres::Rings(rings) => rings.lattice.spheres(),
             WallSpheres::Scattered(scattered) => scattered.spheres(),
+            WallSpheres::Smooth(_) => 0,
         }
     }
 
@@ -194,6 +222,7 @@ impl PrescribedWall {
         let ((cos, sin), ring, z) = match &self.spheres {
             WallSpheres::Rings(rings) => rings.sphere(index),
             WallSpheres::Scattered(scattered) => scattered.sphere(index, &self.wave, &self.now),
+            WallSpheres::Smooth(_) => unreachable!("a smooth wall has no spheres"),
         };
         Sphere {
             position: DVec3::new(ring.radius * cos, ring.radius * sin, z),
@@ -203,16 +232,10 @@ impl PrescribedWall {
         }
     }
 
-    /// Calls `touch` for each wall sphere that overlaps a sphere of diameter `diameter` at `centre`, with the number of
-    /// the wall sphere, the separation (centre minus wall sphere, length below the reach) and the wall's velocity.
+    /// Calls `touch` for each wall sphere nearer than `reach` to `centre`, with the number of the wall sphere, the
+    /// separation (centre minus wall sphere, length below the reach) and the wall's velocity.
     #[inline(always)]
-    fn for_each_touching(
-        &self,
-        centre: DVec3,
-        diameter: f64,
-        touch: impl FnMut(u32, DVec3, DVec3),
-    ) {
-        let reach = 0.5 * (diameter + self.sphere_diameter);
+    fn for_each_touching(&self, centre: DVec3, reach: f64, touch: impl FnMut(u32, DVec3, DVec3)) {
         match &self.spheres {
             WallSpheres::Rings(rings) => {
                 let narrowest = self.wave.mean_radius - self.wave.amplitude.abs();
@@ -221,23 +244,35 @@ impl PrescribedWall {
             WallSpheres::Scattered(scattered) => {
                 scattered.for_each_touching(centre, reach, &self.wave, &self.now, touch);
             }
+            WallSpheres::Smooth(_) => {}
         }
     }
 
-    /// Calls `touch` for each contact of a grain: with the number of the wall sphere, the contact (the grain not rotating)
-    /// and the velocity of the wall there.
+    /// Calls `touch` for each contact of a grain, or each gap up to `range`: with the number of the wall sphere (of a smooth
+    /// wall, of the contact), the contact (the grain not rotating) and the velocity of the wall there.
     #[inline(always)]
     pub(crate) fn for_each_contact(
         &self,
         grain: &Sphere,
+        range: f64,
         mut touch: impl FnMut(u32, Contact, DVec3),
     ) {
+        if let WallSpheres::Smooth(smooth) = &self.spheres {
+            let half = 0.5 * self.sphere_diameter;
+            let instant = (&self.wave, &self.now);
+            return smooth.for_each_contact(grain, half, range, instant, touch);
+        }
         let diameters = (grain.diameter, self.sphere_diameter);
-        let at = (grain.position, grain.diameter);
-        self.for_each_touching(at.0, at.1, |sphere, separation, velocity| {
+        let overlaps = 0.5 * (grain.diameter + self.sphere_diameter);
+        let reach = if range > 0.0 {
+            overlaps + range
+        } else {
+            overlaps
+        };
+        self.for_each_touching(grain.position, reach, |sphere, separation, velocity| {
             let contact = Contact::new(diameters, separation, grain.velocity - velocity);
             // Rounding may leave a sphere at the very edge of reach.
-            if contact.touches() {
+            if contact.touches() || range > 0.0 && contact.distance > 0.0 {
                 touch(sphere, contact, velocity);
             }
         });

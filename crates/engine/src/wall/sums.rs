@@ -18,6 +18,8 @@ pub(crate) trait WallSums {
     fn add(&mut self, terms: &WallTerms);
     /// The energy of a tangential spring whose contact has ended.
     fn add_ended(&mut self, energy: f64);
+    /// Energies that rolling resistance and breaking cohesion took in this step, where the reference kernel computes.
+    fn add_general(&mut self, _rolling: f64, _cohesion: f64) {}
 }
 
 impl WallSums for Tally {
@@ -33,6 +35,11 @@ impl WallSums for Tally {
     #[inline(always)]
     fn add_ended(&mut self, energy: f64) {
         self.history_reset += energy;
+    }
+
+    fn add_general(&mut self, rolling: f64, cohesion: f64) {
+        self.rolling_lost += rolling;
+        self.cohesion_lost += cohesion;
     }
 }
 

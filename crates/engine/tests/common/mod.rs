@@ -18,6 +18,7 @@ pub(crate) use peristalsis_physics::contact::{
     ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
     ViscoelasticHertz,
 };
+pub(crate) use peristalsis_physics::sizes::Sizes;
 pub(crate) use peristalsis_physics::wall::{
     Contraction, Lattice, RadiusTable, Schedule, SegmentDrive, Segments, Waveform,
 };
@@ -55,7 +56,7 @@ pub(crate) fn parameters(
     time_step: f64,
 ) -> Parameters {
     Parameters {
-        contact: ContactModel { normal, friction },
+        contact: ContactModel::new(normal, friction),
         integrator,
         time_step,
         skin: 0.3,
@@ -152,6 +153,14 @@ pub(crate) fn waving(
     Wall::Prescribed(wall)
 }
 
+/// A prescribed tube without its spheres.
+pub(crate) fn smooth(wall: Wall) -> Wall {
+    match wall {
+        Wall::Prescribed(wall) => Wall::Prescribed(wall.smooth()),
+        elastic => elastic,
+    }
+}
+
 /// A straight tube whose wall is too far away to be touched.
 pub(crate) fn wide(length: f64) -> Wall {
     prescribed(lattice(60, 2, 1, length), 10.0, -1.0, 0.0, 0.1)
@@ -229,8 +238,7 @@ pub(crate) fn packed(
 ) -> Bodies {
     let packing = Packing {
         number,
-        diameter_min,
-        diameter_max: 1.0,
+        sizes: Sizes::Uniform([diameter_min, 1.0]),
         state: InitialState::Rest,
         axial_velocity: 0.0,
         seed,

@@ -11,6 +11,8 @@ pub(crate) enum Tube {
     Narrow,
     /// As narrow, of spheres that stand anywhere.
     Scattered,
+    /// As narrow, without spheres.
+    Smooth,
     /// Prescribed, ten grains wide, with waves of several grains across.
     Wide,
     /// Of mobile spheres.
@@ -134,6 +136,7 @@ impl Numbers {
 pub(crate) fn lively(row: Row) -> State {
     let (wall, number) = match row.tube {
         Tube::Narrow | Tube::Scattered => (strained(coarse(2), -1.0, 2.6, 0.1), 60),
+        Tube::Smooth => (smooth(strained(coarse(2), -1.0, 2.6, 0.1)), 60),
         Tube::Wide => {
             let lattice = lattice(34, 22, 1, 20.0);
             (prescribed(lattice, 5.0, 1.0, 1.5, 0.02), 300)
@@ -172,6 +175,7 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
     let (wall, radius) = match row.tube {
         Tube::Narrow => (narrow_tube(numbers, time_step), 1.5),
         Tube::Scattered => (scattered_tube(numbers, time_step), 1.5),
+        Tube::Smooth => (smooth(narrow_tube(numbers, time_step)), 1.5),
         Tube::Wide => (wide_tube(numbers, time_step), 5.0),
         Tube::Elastic => springy(numbers, time_step),
     };
@@ -189,10 +193,7 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
         bodies,
         wall,
         parameters: Parameters {
-            contact: ContactModel {
-                normal: row.normal,
-                friction,
-            },
+            contact: ContactModel::new(row.normal, friction),
             integrator: row.integrator,
             time_step,
             skin: numbers.one_of(&[0.02, 0.3, 0.7]),

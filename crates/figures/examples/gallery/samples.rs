@@ -348,6 +348,7 @@ fn snapshot(length: f64, width: Width) -> Drawn {
             period: length,
             wavelength: 10.0,
         }],
+        speed: "*c*",
         width,
     }
     .draw()
@@ -379,6 +380,7 @@ fn snapshots() -> Drawn {
             snapshot("(a)  unjammed, *t*/*T* = 3", &grains),
             snapshot("(b)  jammed, *t*/*T* = 40", &jammed),
         ],
+        speed: "*c*",
         width: Width::DoubleColumn,
     }
     .draw()

@@ -1,21 +1,28 @@
 //! Contact mechanics: the force that two touching spheres exert on each other.
 //!
 //! A contact law is a pair: a [`NormalLaw`] (one file each: [`linear`], [`hertz`]) and a [`TangentialLaw`]
-//! ([`tangential`]). Both are stateless parameter structs; the memory of a contact is the [`TangentialLaw::History`]
+//! ([`tangential`]; [`general`] with [`rolling`] resistance and [`cohesion`]). Both are stateless parameter structs; the memory of a contact is the [`TangentialLaw::History`]
 //! of the law that needs it, so that law and history cannot disagree. [`ContactLaw::force`] is the only place where
 //! the two are put together; every kernel calls it.
 
+pub mod cohesion;
+pub mod general;
 pub mod hertz;
 pub mod linear;
+pub mod model;
+pub mod rolling;
 pub mod tangential;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::real::{Real, Vector};
 
+pub use cohesion::Cohesion;
+pub use general::{General, GeneralHistory};
 pub use hertz::{DissipationForm, ViscoelasticHertz};
 pub use linear::LinearSpringDashpot;
+pub use model::{ContactModel, Normal};
+pub use rolling::{RollingCouple, RollingResistance};
 pub use tangential::{CundallStrack, Frictionless, Sliding, TangentialHistory};
 
 /// Two touching spheres i ("this") and j ("the partner"), as a contact law sees them.
@@ -23,7 +30,7 @@ pub use tangential::{CundallStrack, Frictionless, Sliding, TangentialHistory};
 /// Lengths in d, velocities in d/t; `normal` points from the partner to this sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<R: Real = f64> {
-    /// xi = (d_i + d_j)/2 - |r_i - r_j| > 0.
+    /// xi = (d_i + d_j)/2 - |r_i - r_j|, positive unless the spheres cohere.
     pub overlap: R,
     /// |r_i - r_j|.
     pub distance: R,
@@ -36,6 +43,8 @@ pub struct Contact<R: Real = f64> {
     /// l_i omega_i + l_j omega_j with the lever arms l = (d - xi)/2; zero where nothing rotates. n x this is what
     /// rotation adds to the relative velocity of the surfaces.
     pub rotation: R::Vector,
+    /// omega_i - omega_j, which rolling resistance alone looks at \[1/t\].
+    pub spin: R::Vector,
 }
 
 /// R_ij = d_i d_j/(2 (d_i + d_j)) \[d\], the reduced radius of two spheres.
@@ -61,6 +70,7 @@ impl<R: Real> Contact<R> {
             relative_velocity,
             reduced_radius: reduced_radius(diameter, other),
             rotation: R::Vector::default(),
+            spin: R::Vector::default(),
         }
     }
 
@@ -70,17 +80,34 @@ impl<R: Real> Contact<R> {
         R::splat(0.5) * (diameter - self.overlap)
     }
 
-    /// The same contact with l_i omega_i + l_j omega_j = `rotation`.
+    /// The same contact with l_i omega_i + l_j omega_j = `rotation` and omega_i - omega_j = `spin`.
     #[inline(always)]
     #[must_use]
-    pub fn rotating(self, rotation: R::Vector) -> Self {
-        Self { rotation, ..self }
+    pub fn rotating(self, rotation: R::Vector, spin: R::Vector) -> Self {
+        Self {
+            rotation,
+            spin,
+            ..self
+        }
     }
 
     /// v_n = (v_i - v_j) . n, positive when parting.
     #[inline(always)]
     pub fn normal_velocity(&self) -> R {
         self.relative_velocity.dot(self.normal)
+    }
+
+    /// The part of v_i - v_j in the plane of contact.
+    #[inline(always)]
+    pub fn lateral_velocity(&self) -> R::Vector {
+        self.relative_velocity - self.normal * self.normal_velocity()
+    }
+
+    /// What a normal law answers, and max(f_n, 0), which bounds friction.
+    #[inline(always)]
+    fn normal_force(&self, law: &impl NormalLaw) -> (NormalForce<R>, R) {
+        let force = law.force(self.overlap, self.normal_velocity(), self.reduced_radius);
+        (force, force.force.positive_part())
     }
 }
 
@@ -186,13 +213,16 @@ impl Elasticity {
     }
 }
 
-/// A force in the plane of contact.
+/// A force in the plane of contact, and what else a contact has beside its normal law.
 pub trait TangentialLaw: Copy + Sync {
     /// What a contact remembers from one step to the next.
     type History<R: Real>: Copy + Default + PartialEq + core::fmt::Debug + Send + Sync;
 
     /// Whether this law turns grains: `false` lets a kernel skip everything about rotation.
     const ROTATES: bool;
+
+    /// Whether it has a couple or a range: `false` lets a kernel skip both.
+    const IS_GENERAL: bool = false;
 
     /// Force after a step of length `time_step` that led to `contact`, for normal force `normal_force`; brings
     /// `history` from the step's beginning to its end. A `time_step` of zero evaluates without moving the history.
@@ -204,8 +234,47 @@ pub trait TangentialLaw: Copy + Sync {
         time_step: f64,
     ) -> TangentialForce<R>;
 
-    /// Energy held by a history: it is lost when the contact ends.
+    /// Energy held by the springs of a history: it is lost when the contact ends.
     fn stored_energy<R: Real>(&self, history: &Self::History<R>) -> R;
+
+    /// The force of the normal law with what coheres, and the force that bounds friction, never negative.
+    #[inline(always)]
+    fn normal_force<R: Real>(
+        &self,
+        normal: &impl NormalLaw,
+        contact: &Contact<R>,
+        _history: &mut Self::History<R>,
+    ) -> (NormalForce<R>, R) {
+        contact.normal_force(normal)
+    }
+
+    /// Couple that resists rolling, bounded as friction is; moves `history` on as [`TangentialLaw::force`] does.
+    #[inline(always)]
+    fn couple<R: Real>(
+        &self,
+        _contact: &Contact<R>,
+        _normal_force: R,
+        _history: &mut Self::History<R>,
+        _time_step: f64,
+    ) -> RollingCouple<R> {
+        RollingCouple::default()
+    }
+
+    /// Energy of cohesion that is lost when the contact ends.
+    #[inline(always)]
+    fn bond(&self, _history: &Self::History<f64>) -> f64 {
+        0.0
+    }
+
+    /// Gap between surfaces up to which a contact with this history acts; without one, the largest there may be \[d\].
+    fn range(
+        &self,
+        _normal: &impl NormalLaw,
+        _reduced_radius: f64,
+        _history: Option<&Self::History<f64>>,
+    ) -> f64 {
+        0.0
+    }
 }
 
 /// A normal and a tangential law together.
@@ -224,10 +293,12 @@ pub struct ContactForce<R: Real = f64> {
     pub force: R::Vector,
     /// -n x f_t: times the lever arm l_i it is the torque on this sphere, times l_j the torque on the partner.
     pub torque_per_arm: R::Vector,
-    /// Elastic energy of normal and tangential springs.
+    /// Energy of cohesion and of normal, tangential and rolling springs.
     pub energy: R,
     /// Rate of energy loss along the normal, (f_elastic - f_n) v_n.
     pub normal_dissipation: R,
+    /// What resists rolling: a couple beside the torque, and its loss of this step.
+    pub rolling: RollingCouple<R>,
     /// Tangential part, with its losses of this step.
     pub tangential: TangentialForce<R>,
 }
@@ -245,7 +316,7 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
     /// Force of one contact.
     ///
     /// f = f_n n + f_t. The tangential law sees max(f_n, 0): a contact that pulls (possible with the unclipped linear
-    /// law) has no friction.
+    /// law) has no friction, unless it coheres: see [`Cohesion`].
     #[inline(always)]
     pub fn force<R: Real>(
         &self,
@@ -253,22 +324,25 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
         history: &mut T::History<R>,
         time_step: f64,
     ) -> ContactForce<R> {
-        let normal_velocity = contact.normal_velocity();
-        let normal = self
-            .normal
-            .force(contact.overlap, normal_velocity, contact.reduced_radius);
-        let normal_dissipation = (normal.elastic_force - normal.force) * normal_velocity;
+        let (normal, pressing) = self.tangential.normal_force(&self.normal, contact, history);
+        let normal_dissipation = (normal.elastic_force - normal.force) * contact.normal_velocity();
         if T::ROTATES {
-            let tangential =
-                self.tangential
-                    .force(contact, normal.force.positive_part(), history, time_step);
-            ContactForce {
+            let tangential = self.tangential.force(contact, pressing, history, time_step);
+            let mut answer = ContactForce {
                 force: contact.normal * normal.force + tangential.force,
                 torque_per_arm: -contact.normal.cross(tangential.force),
                 energy: normal.energy + tangential.energy,
                 normal_dissipation,
+                rolling: RollingCouple::default(),
                 tangential,
+            };
+            if T::IS_GENERAL {
+                answer.rolling = self
+                    .tangential
+                    .couple(contact, pressing, history, time_step);
+                answer.energy = answer.energy + answer.rolling.energy;
             }
+            answer
         } else {
             ContactForce {
                 force: contact.normal * normal.force,
@@ -280,88 +354,36 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
     }
 }
 
+impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
+    /// Largest gap at which a sphere of diameter `diameter` may cohere with another, or with a wall that is not bent
+    /// as much as it \[d\].
+    #[inline(always)]
+    pub fn range(&self, diameter: f64) -> f64 {
+        match T::IS_GENERAL {
+            true => self.tangential.range(&self.normal, diameter, None),
+            false => 0.0,
+        }
+    }
+
+    /// Whether a contact with this history acts: the spheres overlap, or cohere within reach.
+    #[inline(always)]
+    pub fn acts(&self, contact: &Contact, history: &T::History<f64>) -> bool {
+        contact.touches()
+            || T::IS_GENERAL
+                && contact.distance > 0.0
+                && contact.overlap
+                    > -self
+                        .tangential
+                        .range(&self.normal, contact.reduced_radius, Some(history))
+    }
+}
+
 impl Contact {
     /// Whether the spheres overlap and have a normal, which spheres at the same place have not.
     #[inline(always)]
     pub fn touches(&self) -> bool {
         self.overlap > 0.0 && self.distance > 0.0
     }
-}
-
-/// Normal contact law. It takes the keys that name it; friction goes with every law.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(tag = "law", rename_all = "snake_case")]
-pub enum Normal {
-    /// Linear spring and dashpot.
-    Linear(LinearSpringDashpot),
-    /// Hertz spring with viscoelastic damping.
-    Hertz(ViscoelasticHertz),
-}
-
-/// Evaluates an expression with the law that a [`Normal`] holds, whose type the compiler then knows:
-/// `with_normal_law!(normal, law => expression)`. The only place that lists the normal laws again.
-#[macro_export]
-macro_rules! with_normal_law {
-    ($normal:expr, $law:ident => $answer:expr) => {
-        match $normal {
-            $crate::contact::Normal::Linear($law) => $answer,
-            $crate::contact::Normal::Hertz($law) => $answer,
-        }
-    };
-}
-
-impl NormalLaw for Normal {
-    #[inline(always)]
-    fn force<R: Real>(&self, overlap: R, normal_velocity: R, reduced_radius: R) -> NormalForce<R> {
-        with_normal_law!(self, law => law.force(overlap, normal_velocity, reduced_radius))
-    }
-
-    fn undamped(&self) -> Self {
-        with_normal_law!(self, law => law.undamped().into())
-    }
-
-    fn stiffness(&self, overlap: f64, reduced_radius: f64) -> f64 {
-        with_normal_law!(self, law => law.stiffness(overlap, reduced_radius))
-    }
-
-    fn elasticity(&self) -> Elasticity {
-        with_normal_law!(self, law => law.elasticity())
-    }
-
-    fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64 {
-        with_normal_law!(self, law => law.impact_overlap(reduced_mass, speed, reduced_radius))
-    }
-
-    fn rebound(&self, impact: Impact) -> Rebound {
-        with_normal_law!(self, law => law.rebound(impact))
-    }
-
-    fn with_restitution(&self, restitution: f64, impact: Impact) -> Self {
-        with_normal_law!(self, law => law.with_restitution(restitution, impact).into())
-    }
-}
-
-impl From<LinearSpringDashpot> for Normal {
-    fn from(law: LinearSpringDashpot) -> Self {
-        Self::Linear(law)
-    }
-}
-
-impl From<ViscoelasticHertz> for Normal {
-    fn from(law: ViscoelasticHertz) -> Self {
-        Self::Hertz(law)
-    }
-}
-
-/// The contact model of a simulation: which laws, with which parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ContactModel {
-    /// Force along the line of centres.
-    #[serde(flatten)]
-    pub normal: Normal,
-    /// Force in the plane of contact; `None`: grains are smooth and do not rotate.
-    #[serde(flatten)]
-    pub friction: Option<CundallStrack>,
 }
 
 #[cfg(test)]
@@ -394,6 +416,7 @@ mod tests {
             relative_velocity: DVec3::new(parting, 0.3, 0.0),
             reduced_radius: 0.25,
             rotation: DVec3::ZERO,
+            spin: DVec3::ZERO,
         }
     }
 

@@ -117,12 +117,35 @@ impl TangentialLaw for CundallStrack {
     type History<R: Real> = TangentialHistory<R>;
     const ROTATES: bool = true;
 
-    /// The displacement is brought forward by the trapezoidal rule, so that the order is 2 while a contact persists,
-    /// whatever the integrator of the motion.
     #[inline(always)]
     fn force<R: Real>(
         &self,
         contact: &Contact<R>,
+        normal_force: R,
+        history: &mut TangentialHistory<R>,
+        time_step: f64,
+    ) -> TangentialForce<R> {
+        let lateral_velocity = contact.lateral_velocity();
+        let slip_velocity = lateral_velocity + contact.normal.cross(contact.rotation);
+        self.respond(contact, slip_velocity, normal_force, history, time_step)
+    }
+
+    #[inline(always)]
+    fn stored_energy<R: Real>(&self, history: &TangentialHistory<R>) -> R {
+        R::splat(0.5 * self.tangential_stiffness) * history.displacement.dot(history.displacement)
+    }
+}
+
+impl CundallStrack {
+    /// Spring, dashpot and slider in the plane of contact, for any velocity `slip_velocity` in it.
+    ///
+    /// The displacement is brought forward by the trapezoidal rule, so that the order is 2 while a contact persists,
+    /// whatever the integrator of the motion.
+    #[inline(always)]
+    pub(super) fn respond<R: Real>(
+        &self,
+        contact: &Contact<R>,
+        slip_velocity: R::Vector,
         normal_force: R,
         history: &mut TangentialHistory<R>,
         time_step: f64,
@@ -133,9 +156,7 @@ impl TangentialLaw for CundallStrack {
         let (step, half_step) = (R::splat(time_step), R::splat(0.5 * time_step));
 
         let normal = contact.normal;
-        let lateral_velocity = contact.relative_velocity - normal * contact.normal_velocity();
-        let slip_velocity = lateral_velocity + normal.cross(contact.rotation);
-        let normal_rate = lateral_velocity * (R::splat(1.0) / contact.distance);
+        let normal_rate = contact.lateral_velocity() * (R::splat(1.0) / contact.distance);
 
         let predicted = history.displacement + history.rate * step;
         let rate = slip_velocity - normal * predicted.dot(normal_rate);
@@ -182,13 +203,6 @@ impl TangentialLaw for CundallStrack {
         }
     }
 
-    #[inline(always)]
-    fn stored_energy<R: Real>(&self, history: &TangentialHistory<R>) -> R {
-        R::splat(0.5 * self.tangential_stiffness) * history.displacement.dot(history.displacement)
-    }
-}
-
-impl CundallStrack {
     /// Coefficient that |f~|/f_n must reach for a contact to slide.
     ///
     /// A contact that slides goes on until |f~| falls below mu_k f_n: without this memory it would stick at once, its
@@ -255,6 +269,7 @@ mod tests {
             relative_velocity: DVec3::new(slip, 0.0, -0.3),
             reduced_radius: 0.25,
             rotation: DVec3::ZERO,
+            spin: DVec3::ZERO,
         }
     }
 

@@ -18,6 +18,8 @@ pub enum Arrangement {
     Disordered,
     /// At the angles and places of a table; strain control.
     File,
+    /// Nowhere: the wall is the smooth surface that they would make if there were ever more of them; strain control.
+    Smooth,
 }
 
 impl Arrangement {

@@ -161,6 +161,16 @@ impl Segments {
             .fold(0.0, f64::max)
     }
 
+    /// Length of the way from one segment to the next \[lambda\].
+    pub fn border(&self) -> f64 {
+        self.edge / f64::from(self.number)
+    }
+
+    /// Largest size of dG/dy \[1/wavelength\].
+    pub fn steepest(&self) -> f64 {
+        1.5 / self.border()
+    }
+
     /// Mean of G over a wavelength and a period.
     pub fn mean(&self) -> f64 {
         -(self.duty + 0.5 * (self.rise + self.fall))

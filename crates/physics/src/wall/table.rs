@@ -53,6 +53,21 @@ impl RadiusTable {
         Some(table)
     }
 
+    /// Least distance of two neighbouring points \[cycles\].
+    pub fn closest(&self) -> f64 {
+        let lengths = (0..self.number).map(|point| self.piece(point).0);
+        lengths.fold(1.0, f64::min)
+    }
+
+    /// A size that the slope nowhere exceeds: of a cubic that makes no new extremes three times its mean rise.
+    pub fn steepest(&self) -> f64 {
+        let steepness = |point| {
+            let (length, rise) = self.piece(point);
+            3.0 * rise.abs() / length
+        };
+        (0..self.number).map(steepness).fold(0.0, f64::max)
+    }
+
     /// Length and rise of the curve from a point to the next, round the end.
     fn piece(&self, point: usize) -> (f64, f64) {
         let next = (point + 1) % self.number;

@@ -1,5 +1,7 @@
 //! The travelling wave of contraction that a strain-controlled wall follows.
 
+use core::f64::consts::TAU;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -43,6 +45,25 @@ impl Contraction {
         match self {
             Self::Wave(waveform) => waveform.largest(),
             Self::Table(_) | Self::Segments(_) => 0.0,
+        }
+    }
+
+    /// Largest size of the slope along the tube \[1/lambda\].
+    pub fn steepest(&self) -> f64 {
+        match self {
+            Self::Wave(waveform) => TAU * waveform.steepest(),
+            Self::Table(table) => table.steepest(),
+            Self::Segments(segments) => segments.steepest(),
+        }
+    }
+
+    /// Length along the tube over which the shape has one bend at most, about \[lambda\].
+    pub fn finest(&self) -> f64 {
+        match self {
+            Self::Wave(Waveform::Roller) => 0.05,
+            Self::Wave(_) => 0.25,
+            Self::Table(table) => table.closest(),
+            Self::Segments(segments) => segments.border(),
         }
     }
 }
@@ -156,8 +177,6 @@ impl RadiusWave {
 
 #[cfg(test)]
 mod tests {
-    use core::f64::consts::TAU;
-
     use super::*;
     use crate::wall::SegmentDrive;
 
@@ -209,6 +228,11 @@ mod tests {
             let ahead = wave.radius(z + dt, cycles);
             let behind = wave.radius(z - dt, cycles);
             assert!((ring.slope - (ahead - behind) / (2.0 * dt)).abs() < 1e-9);
+            let slope = |step: u32| wave.ring(1e-3 * f64::from(step), 0.9, 0.1, 0.0).slope.abs();
+            let steepest = (0..10_000).map(slope).fold(0.0, f64::max);
+            let bound = wave.contraction.steepest() * 0.25 / 10.0;
+            assert!(steepest <= bound * (1.0 + 1e-12), "{steepest} {bound}");
+            assert!(steepest > 0.4 * bound, "{steepest} {bound}");
         }
     }
 

@@ -5,8 +5,9 @@
 
 use glam::DVec3;
 use peristalsis_physics::contact::{
-    Contact, ContactForce, ContactLaw, ContactModel, CundallStrack, DissipationForm, Frictionless,
-    LinearSpringDashpot, Normal, Sliding, TangentialHistory, ViscoelasticHertz,
+    Cohesion, Contact, ContactForce, ContactLaw, ContactModel, CundallStrack, DissipationForm,
+    Frictionless, General, GeneralHistory, LinearSpringDashpot, Normal, RollingResistance, Sliding,
+    TangentialLaw, ViscoelasticHertz,
 };
 
 /// The normal law of the frictionless preset.
@@ -56,13 +57,54 @@ pub(crate) fn normals() -> [(&'static str, Normal); 3] {
 
 /// A normal law without friction.
 pub(crate) const fn smooth(normal: Normal) -> ContactModel {
-    ContactModel {
-        normal,
-        friction: None,
-    }
+    ContactModel::new(normal, None)
 }
 
-/// Every contact law there is, by name: each normal law without friction and with each form of sliding.
+pub(crate) const ROLLING: RollingResistance = RollingResistance {
+    rolling_friction: 0.1,
+    rolling_stiffness: 0.8,
+    rolling_damping: 0.05,
+};
+
+/// A pull that is constant in contact and reaches beyond it.
+pub(crate) const PULL: Cohesion = Cohesion {
+    cohesion_force: 2e-3,
+    cohesion_range: 0.02,
+    surface_energy: 0.0,
+};
+
+pub(crate) const JKR: Cohesion = Cohesion {
+    cohesion_force: 0.0,
+    cohesion_range: 0.0,
+    surface_energy: 1e-3,
+};
+
+/// Laws with rolling resistance, cohesion, and both.
+fn general() -> Vec<(String, ContactModel)> {
+    let normals = [
+        Normal::Linear(LINEAR),
+        Normal::Hertz(hertz(DissipationForm::Viscoelastic)),
+    ];
+    let mut rows = Vec::new();
+    for normal in normals {
+        for cohesion in [None, Some(PULL), Some(JKR)] {
+            let is_hertz = matches!(normal, Normal::Hertz(_));
+            for rolling in [None, Some(ROLLING)] {
+                let model = ContactModel {
+                    cohesion,
+                    rolling,
+                    ..ContactModel::new(normal, rolling.map(|_| friction(Sliding::Spring)))
+                };
+                if model.is_general() && (is_hertz || cohesion != Some(JKR)) {
+                    rows.push((format!("{model:?}"), model));
+                }
+            }
+        }
+    }
+    rows
+}
+
+/// Every contact law there is, by name: each normal law without friction and with each form of sliding; and the general ones.
 pub(crate) fn table() -> Vec<(String, ContactModel)> {
     let mut rows = Vec::new();
     for (name, normal) in normals() {
@@ -71,10 +113,11 @@ pub(crate) fn table() -> Vec<(String, ContactModel)> {
             let friction = Some(friction(sliding));
             rows.push((
                 format!("{name}, {sliding:?}"),
-                ContactModel { normal, friction },
+                ContactModel::new(normal, friction),
             ));
         }
     }
+    rows.extend(general());
     rows
 }
 
@@ -82,17 +125,31 @@ pub(crate) fn table() -> Vec<(String, ContactModel)> {
 pub(crate) fn answer(
     model: &ContactModel,
     contact: &Contact,
-    history: &mut TangentialHistory,
+    history: &mut GeneralHistory,
     time_step: f64,
 ) -> ContactForce {
     let normal = model.normal;
-    match model.friction {
-        None => ContactLaw {
+    match (General::of(model), model.friction) {
+        (Some(tangential), _) => {
+            ContactLaw { normal, tangential }.force(contact, history, time_step)
+        }
+        (None, None) => ContactLaw {
             normal,
             tangential: Frictionless,
         }
         .force(contact, &mut (), time_step),
-        Some(tangential) => ContactLaw { normal, tangential }.force(contact, history, time_step),
+        (None, Some(tangential)) => {
+            ContactLaw { normal, tangential }.force(contact, &mut history.friction, time_step)
+        }
+    }
+}
+
+/// Whether a contact with this history acts.
+pub(crate) fn acts(model: &ContactModel, contact: &Contact, history: &GeneralHistory) -> bool {
+    let normal = model.normal;
+    match General::of(model) {
+        Some(tangential) => ContactLaw { normal, tangential }.acts(contact, history),
+        None => contact.touches(),
     }
 }
 
@@ -105,10 +162,10 @@ pub(crate) struct Collision {
     pub(crate) position: [DVec3; 2],
     pub(crate) velocity: [DVec3; 2],
     pub(crate) angular_velocity: [DVec3; 2],
-    pub(crate) history: TangentialHistory,
+    pub(crate) history: GeneralHistory,
     /// What the law answered last.
     pub(crate) last: ContactForce,
-    /// Energy lost so far along the normal, by the trapezoidal rule, and in the plane of contact.
+    /// Energy lost so far along the normal, by the trapezoidal rule, and in the plane of contact, by rolling, by breaking.
     pub(crate) lost: [f64; 2],
 }
 
@@ -123,7 +180,7 @@ impl Collision {
             position: [DVec3::new(-angle.cos(), angle.sin(), 0.0), DVec3::ZERO],
             velocity: [DVec3::new(speed, 0.0, 0.0), DVec3::ZERO],
             angular_velocity: [DVec3::ZERO; 2],
-            history: TangentialHistory::default(),
+            history: GeneralHistory::default(),
             last: ContactForce::default(),
             lost: [0.0; 2],
         }
@@ -137,6 +194,11 @@ impl Collision {
         0.5 * (self.diameter[0] + self.diameter[1]) - self.position[0].distance(self.position[1])
     }
 
+    /// Whether the contact acts.
+    pub(crate) fn touches(&self) -> bool {
+        acts(&self.model, &self.contact(), &self.history)
+    }
+
     /// The contact as the law sees it.
     pub(crate) fn contact(&self) -> Contact {
         let [first, second] = self.diameter;
@@ -148,6 +210,7 @@ impl Collision {
         contact.rotating(
             contact.arm(first) * self.angular_velocity[0]
                 + contact.arm(second) * self.angular_velocity[1],
+            self.angular_velocity[0] - self.angular_velocity[1],
         )
     }
 
@@ -163,11 +226,14 @@ impl Collision {
 
     /// Asks the law, with a step of `time_step` behind it; nothing where the spheres do not touch.
     pub(crate) fn evaluate(&mut self, time_step: f64) {
-        if self.overlap() > 0.0 {
+        if self.touches() {
             let contact = self.contact();
             self.last = answer(&self.model, &contact, &mut self.history, time_step);
         } else {
-            self.history = TangentialHistory::default();
+            if let Some(law) = General::of(&self.model) {
+                self.lost[1] += law.stored_energy(&self.history) + law.bond(&self.history);
+            }
+            self.history = GeneralHistory::default();
             self.last = ContactForce::default();
         }
     }
@@ -179,7 +245,10 @@ impl Collision {
         let turn = |sphere: usize| self.last.torque_per_arm * (arm(sphere) / self.inertia(sphere));
         (
             [force / self.mass[0], -force / self.mass[1]],
-            [turn(0), turn(1)],
+            [
+                turn(0) + self.last.rolling.couple / self.inertia(0),
+                turn(1) - self.last.rolling.couple / self.inertia(1),
+            ],
         )
     }
 
@@ -200,6 +269,7 @@ impl Collision {
         }
         self.lost[0] += 0.5 * time_step * (before + self.last.normal_dissipation);
         self.lost[1] += self.last.tangential.damped + self.last.tangential.slid;
+        self.lost[1] += self.last.rolling.lost;
     }
 
     /// Steps until the spheres have met and parted.
@@ -208,7 +278,7 @@ impl Collision {
         let mut met = false;
         for _ in 0..10_000_000 {
             self.step(time_step);
-            let touching = self.overlap() > 0.0;
+            let touching = self.touches();
             if met && !touching {
                 return;
             }

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 if TYPE_CHECKING:
     #: Names of the presets.
-    _Preset = Literal["frictionless", "frictionless-source", "frictionless-fine", "frictional", "sand-pump", "soft-robot"]
+    _Preset = Literal["frictionless", "frictionless-source", "frictionless-fine", "frictional", "sand-pump", "soft-robot", "silo", "oesophagus"]
 
 
 class Keywords(TypedDict, total=False):
@@ -32,7 +32,7 @@ class Keywords(TypedDict, total=False):
     angles: Sequence[float]
     """tube.angles. Angle of each wall sphere about the axis, from x towards y; under arrangement = "file". (Unit:
     rad.)"""
-    arrangement: Literal["staggered", "aligned", "random", "disordered", "file"]
+    arrangement: Literal["staggered", "aligned", "random", "disordered", "file", "smooth"]
     """tube.arrangement. How the wall spheres stand."""
     arrangement_seed: int
     """tube.arrangement_seed. Seed of a random or disordered arrangement. (A pure number.)"""
@@ -50,6 +50,13 @@ class Keywords(TypedDict, total=False):
     against which the wave has to pump. body.gravity adds to it. Both together stand for a pressure rise over a
     wavelength of N m (-g) lambda/(L pi a^2). (Unit: d t^-2.)"""
     body_gravity: Sequence[float]
+    cohesion_range: float
+    """contact.cohesion_range. Gap between surfaces at which linear cohesion ends; 0: it acts between spheres that
+    overlap. (Unit: d.)"""
+    contact_cohesion_force: float
+    """contact.cohesion_force. Linear cohesion: the force f_c that parts two grains of diameter 1; for others 4 R_ij
+    f_c, R_ij the reduced radius. 0: none. (Unit: m d t^-2.)"""
+    contact_cohesion_range: float
     contact_dissipation_form: Literal["printed", "viscoelastic"]
     contact_dissipation_time: float
     contact_kinetic_friction: float
@@ -62,8 +69,16 @@ class Keywords(TypedDict, total=False):
     contact, so that opposite sides of a throat do not pass through each other; stress control. (Unit: d.)"""
     contact_restitution: float
     contact_restitution_speed: float
+    contact_rolling_damping: float
+    contact_rolling_friction: float
+    contact_rolling_stiffness: float
     contact_sliding: Literal["spring", "balance", "literal"]
     contact_static_friction: float
+    contact_surface_energy: float
+    """contact.surface_energy. Surface energy gamma of JKR cohesion, half the work of adhesion: the force that parts
+    two spheres is 3 pi gamma R_ij, R_ij the reduced radius. Needs the Hertz law. 0: none. Softer grains than the
+    real ones cling more: keep gamma/(Y^(2/3) d) or the pull-off force over the weight, whichever counts, as it is.
+    (Unit: m t^-2.)"""
     contact_tangential_damping: float
     contact_tangential_stiffness: float
     contact_young_modulus: float
@@ -75,10 +90,17 @@ class Keywords(TypedDict, total=False):
     density: float
     """units.density. Density of the grains' material. The unit of mass is m = pi density d^3/6. (Unit: kg m^-3.)"""
     diameter_max: float
-    """grains.diameter_max. Largest grain diameter, not below diameter_min. (Unit: d.)"""
+    """grains.diameter_max. Largest grain diameter, not below diameter_min. Of a table its largest. (Unit: d.)"""
+    diameter_median: float
+    """grains.diameter_median. Median of lognormal diameters. Default: the geometric mean of diameter_min and
+    diameter_max. (Unit: d.)"""
     diameter_min: float
-    """grains.diameter_min. Smallest grain diameter; diameters are uniformly distributed and the mass of a grain is
-    its diameter cubed. (Unit: d.)"""
+    """grains.diameter_min. Smallest grain diameter. The mass of a grain is its diameter cubed. Of a table its
+    least. (Unit: d.)"""
+    diameter_spread: float
+    """grains.diameter_spread. Standard deviation of ln d of lognormal diameters. (A pure number.)"""
+    diameters: Sequence[float]
+    """grains.diameters. Diameters under sizes = "table". (Unit: d.)"""
     direction: Literal["forward", "backward"]
     """drive.direction. Which way the wave runs: forward is towards -z under strain control and towards +z under
     stress control, as the source writes them. Flow rates are positive along the wave in either case."""
@@ -120,29 +142,51 @@ class Keywords(TypedDict, total=False):
     edge: float
     """drive.edge. Length of the way from one segment to the next, over that of a segment; waveform = "segments". (A
     pure number.)"""
+    ends: Literal["periodic", "open"]
+    """tube.ends. What the ends of the tube are."""
     fall: float
     """drive.fall. Part of the period in which a segment opens; waveform = "segments". (Unit: periods.)"""
-    file: str
-    """tube.file. Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the
-    columns angle (rad) and place (d), one sphere per line. Its path is relative to the configuration file, with
-    --set to where the program runs."""
     force_amplitude: float
     """drive.force_amplitude. Amplitude f^P of the radial force on each wall sphere; stress control. (Unit: m d
     t^-2.)"""
+    fractions: Sequence[float]
+    """grains.fractions. Part of the grains, by number, of each of the diameters; they need not add up to 1. (A pure
+    number.)"""
     grain_diameter: float
     """units.grain_diameter. The unit of length d: diameter of a grain whose diameter is 1 in the other tables.
     (Unit: m.)"""
     grains_diameter_max: float
+    grains_diameter_median: float
     grains_diameter_min: float
+    grains_diameter_spread: float
+    grains_diameters: Sequence[float]
+    grains_file: str
+    """grains.file. Table of the diameters under sizes = "table", instead of diameters and fractions: CSV with the
+    columns diameter and fraction (by number), one size per line. Its path is relative to the configuration file,
+    with --set to where the program runs."""
+    grains_fractions: Sequence[float]
+    grains_large_fraction: float
+    grains_large_volume_fraction: float
     grains_number: int
     grains_number_density: float
+    grains_sizes: Literal["uniform", "lognormal", "two", "table"]
     grains_volume_fraction: float
     gravity: Sequence[float]
     """body.gravity. Gravity [x, y, z] on the grains. z is the tube's axis, whichever way the wave runs; x and y lie
     across it: [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an upright one. The wall has no weight.
     drive.body_force adds to it; units.acceleration gives it in SI. (Unit: d t^-2.)"""
+    head: float
+    """inlet.head. Length of the tube before the outlet that the inlet keeps filled: grains are put in at its far
+    end, as soon as there is place. Default: the whole tube. (Unit: d.)"""
     initial_axial_velocity: float
     initial_state: Literal["rest", "settled", "jammed", "placed"]
+    inlet_feed_rate: float
+    """inlet.feed_rate. Grains put in per time, as far as there is place for them. Default: as many as there is
+    place for. (Unit: t^-1.)"""
+    inlet_head: float
+    inlet_length: float
+    inlet_velocity: float
+    inlet_waiting: int
     integrator: Literal["verlet", "adams_bashforth"]
     """run.integrator. How the equations of motion are stepped."""
     kernel: Literal["fast", "reference"]
@@ -150,11 +194,20 @@ class Keywords(TypedDict, total=False):
     kinetic_friction: float
     """contact.kinetic_friction. Kinetic friction mu_k, not above static_friction. If only static_friction is given,
     equal to it. (A pure number.)"""
+    large_fraction: float
+    """grains.large_fraction. Part of the grains, by number, that have diameter_max under sizes = "two"; the others
+    have diameter_min. (A pure number.)"""
+    large_volume_fraction: float
+    """grains.large_volume_fraction. Part of the grains' volume that those of diameter_max have, instead of
+    large_fraction. (A pure number.)"""
     late_fraction: float
     """observe.late_fraction. Part of the run, at its end, over which late means and profiles are taken. (A pure
     number.)"""
     law: Literal["linear", "hertz"]
     """contact.law. Normal contact law. It takes the keys that name it; friction goes with every law."""
+    length: float
+    """inlet.length. Length of the stretch in which grains are put in, from the far end of the head on. Default: 3
+    largest diameters. (Unit: d.)"""
     material: Literal["glass", "sand", "steel", "pmma", "tablet"]
     """units.material. What the grains are made of: stands for units.density, contact.static_friction and
     kinetic_friction, the restitution (contact.restitution), and under contact.law = "hertz" for
@@ -205,7 +258,8 @@ class Keywords(TypedDict, total=False):
     """drive.radii. Radius at each phase. Only the shape counts: the largest becomes tube.radius, the least half of
     drive.width. (A pure number.)"""
     radius: float
-    """tube.radius. Mean radius a of the tube, to the centres of the wall spheres. (Unit: d.)"""
+    """tube.radius. Mean radius a of the tube, to the centres of the wall spheres. The wall's surface, also of a
+    smooth wall, lies half of wall.sphere_diameter inside it. (Unit: d.)"""
     ramp_periods: float
     """drive.ramp_periods. Length of the ramp of schedule = "ramp", in wave periods. (Unit: periods.)"""
     restitution: float
@@ -220,9 +274,20 @@ class Keywords(TypedDict, total=False):
     rings_per_wave: int
     """tube.rings_per_wave. Rings in a wavelength. Staggered rings under strain control need an even number; under
     stress control an odd number needs an even number of waves. Random and disordered walls have as many spheres as
-    so many rings would have; a wall from a file does not use it. (A pure number.)"""
+    so many rings would have; a wall from a file does not use it. 0 in a smooth wall, where it is not given. (A pure
+    number.)"""
     rise: float
     """drive.rise. Part of the period in which a segment closes; waveform = "segments". (Unit: periods.)"""
+    rolling_damping: float
+    """contact.rolling_damping. Damping eta_r of rolling. Without effect while rolling_friction is 0. (Unit: m
+    t^-1.)"""
+    rolling_friction: float
+    """contact.rolling_friction. Rolling friction mu_r: the couple that resists rolling is at most mu_r f_n R_ij,
+    R_ij the reduced radius. On a plane a sphere rolls where the slope is steeper than mu_r. 0: rolling is free.
+    Needs friction. (A pure number.)"""
+    rolling_stiffness: float
+    """contact.rolling_stiffness. Stiffness k_r of the rolling spring, which takes a couple k_r R_ij^2 for each
+    radian. Without effect while rolling_friction is 0. (Unit: m t^-2.)"""
     run_duration: float
     run_integrator: Literal["verlet", "adams_bashforth"]
     run_kernel: Literal["fast", "reference"]
@@ -243,15 +308,19 @@ class Keywords(TypedDict, total=False):
     """run.seed. Seed of the random numbers that place the grains. (A pure number.)"""
     segments: int
     """drive.segments. Number n of segments in a wavelength; waveform = "segments". (A pure number.)"""
+    sizes: Literal["uniform", "lognormal", "two", "table"]
+    """grains.sizes. How diameters are distributed, by number, from diameter_min to diameter_max."""
     sliding: Literal["spring", "balance", "literal"]
     """contact.sliding. What becomes of the tangential displacement while a contact slides. Without effect while
     both frictions are 0."""
     sphere_diameter: float
-    """wall.sphere_diameter. Diameter of a wall sphere. (Unit: d.)"""
+    """wall.sphere_diameter. Diameter d_w of a wall sphere. The surface of the wall lies d_w/2 inside the tube's
+    radius, so that the clear opening of the bottleneck is w - d_w. Under arrangement = "smooth" it is the same
+    offset, and may be 0. (Unit: d.)"""
     sphere_mass: float
     """wall.sphere_mass. Mass of a wall sphere; stress control. (Unit: m.)"""
     spheres_per_ring: int
-    """tube.spheres_per_ring. Wall spheres in a ring. (A pure number.)"""
+    """tube.spheres_per_ring. Wall spheres in a ring; 0 in a smooth wall, where it is not given. (A pure number.)"""
     spring_damping: float
     """wall.spring_damping. Damping of each spring along its length; stress control. (Unit: m t^-1.)"""
     spring_stiffness: float
@@ -288,9 +357,13 @@ class Keywords(TypedDict, total=False):
     (J/Jmax = 0) it is crossed upward, or downward if it is below 0; from jammed (J/Jmax = 1) downward, or upward if
     it is above 1. (A pure number.)"""
     tube_angles: Sequence[float]
-    tube_arrangement: Literal["staggered", "aligned", "random", "disordered", "file"]
+    tube_arrangement: Literal["staggered", "aligned", "random", "disordered", "file", "smooth"]
     tube_arrangement_seed: int
+    tube_ends: Literal["periodic", "open"]
     tube_file: str
+    """tube.file. Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the
+    columns angle (rad) and place (d), one sphere per line. Its path is relative to the configuration file, with
+    --set to where the program runs."""
     tube_places: Sequence[float]
     tube_radius: float
     tube_rings_per_wave: int
@@ -298,17 +371,31 @@ class Keywords(TypedDict, total=False):
     tube_wavelength: float
     tube_waves: int
     units_acceleration: Sequence[float]
+    units_cohesion_force: float
+    """units.cohesion_force. The force that parts two grains of diameter 1 under linear cohesion, instead of
+    contact.cohesion_force. (Unit: N.)"""
     units_density: float
+    units_feed_rate: float
+    """units.feed_rate. Mass that the inlet of an open tube takes in an hour, instead of inlet.feed_rate. (Unit: kg
+    h^-1.)"""
     units_grain_diameter: float
     units_material: Literal["glass", "sand", "steel", "pmma", "tablet"]
     units_stiffness: float
+    units_surface_energy: float
+    """units.surface_energy. Surface energy gamma of JKR cohesion, half the work of adhesion, instead of
+    contact.surface_energy. Dry glass has some 0.05; grains that are computed softer than they are cling more.
+    (Unit: J m^-2.)"""
     units_wave_frequency: float
     units_young_modulus: float
     """units.young_modulus. Young's modulus in SI. With contact.young_modulus it fixes the unit of time, sqrt(m/(Y
     d)) for Y = 1. (Unit: Pa.)"""
+    velocity: float
+    """inlet.velocity. Velocity towards the outlet with which grains are put in. (Unit: d t^-1.)"""
     volume_fraction: float
     """grains.volume_fraction. Volume fraction rho = N d^3/(6 a^2 L) of grains in a straight tube of radius a and
     length L, d^3 averaged over the diameters; N is rounded to the nearest whole number. (A pure number.)"""
+    waiting: int
+    """inlet.waiting. How many of the grains wait outside at t = 0. (A pure number.)"""
     wall_contact_range: float
     wall_drag: float
     wall_keep_axial: float
@@ -409,9 +496,43 @@ class BellySummary(TypedDict):
     """the same where the tube is widest [m d^2/t^2]"""
 
 
+class OpenSummary(TypedDict):
+    """What a summary says under ``open``."""
+
+    discharge_rate: float | None
+    """late mean mass that leaves an open tube through its outlet [m/t]"""
+    discharge_rate_error: float | None
+    """its standard error [m/t]"""
+    return_rate: float | None
+    """late mean mass that leaves an open tube through its inlet, against the flow [m/t]"""
+    return_rate_error: float | None
+    """its standard error [m/t]"""
+    hold_up: float | None
+    """late mean mass of the grains between the ends of an open tube [m]"""
+    hold_up_error: float | None
+    """its standard error [m]"""
+    discharged: float | None
+    """mass that has left an open tube through its outlet since the start [m]"""
+    transit_time: float | None
+    """mean time from the inlet to the outlet of the grains that have gone all the way in the run [t]"""
+    transit_time_error: float | None
+    """its standard error [t]"""
+    transit_time_variance: float | None
+    """variance of that time [t^2]"""
+    refill_efficiency: float | None
+    """volume of the grains discharged in a period over the clear volume of a wavelength; missing for a static
+    wave"""
+    refill_efficiency_error: float | None
+    """its standard error"""
+
+
 class SiSummary(TypedDict):
     """What a summary says under ``si``."""
 
+    discharge_rate_kg_per_s: float | None
+    """discharge_rate in SI; missing without the table units [kg/s]"""
+    discharge_rate_kg_per_s_error: float | None
+    """its standard error [kg/s]"""
     mass_flow_rate_kg_per_s: float | None
     """late mean flow J m; missing without the table units [kg/s]"""
     mass_flow_rate_kg_per_s_error: float | None

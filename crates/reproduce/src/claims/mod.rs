@@ -15,6 +15,9 @@ mod q1;
 mod q10;
 mod q11;
 mod q12;
+mod q13;
+mod q14;
+mod q15;
 mod q2;
 mod q3;
 mod q4;
@@ -61,4 +64,7 @@ pub const CLAIMS: &[Claim] = &[
     q10::CLAIM,
     q11::CLAIM,
     q12::CLAIM,
+    q13::CLAIM,
+    q14::CLAIM,
+    q15::CLAIM,
 ];

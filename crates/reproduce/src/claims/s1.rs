@@ -202,6 +202,7 @@ fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure> {
     let figure = SnapshotFigure {
         title: "",
         snapshots: &snapshots,
+        speed: "*c*",
         width: Width::DoubleColumn,
     };
     let first = &pictures[0].row;

@@ -5,8 +5,8 @@ use std::sync::LazyLock;
 
 use peristalsis_configuration::document::{self, Table};
 use peristalsis_configuration::{
-    Configuration, ConfigurationError, Grains, MATERIALS, Material, Problem, ProblemKind, Problems,
-    SourceFile, check_against, file_with_overrides, material, schema_of,
+    Configuration, ConfigurationError, Grains, MATERIALS, MOST_GRAINS, Material, Problem,
+    ProblemKind, Problems, SourceFile, check_against, file_with_overrides, material, schema_of,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -206,6 +206,22 @@ fn check_together(keys: &Keys, table: &Table, problems: &mut Problems) {
             "tube.diameter is at least grain.diameter (1 + grain.spread)",
         );
     }
+    let number = number_of_grains(keys);
+    if number > MOST_GRAINS as f64 {
+        let waves = match tube.length {
+            Some(length) => format!("tube.length = {length} m"),
+            None => format!("tube.wavelength = {} m", tube.wavelength),
+        };
+        refuse(
+            ProblemKind::Inconsistent,
+            "tube.diameter",
+            format!(
+                "tube.diameter = {} m and {waves} hold {number:.1e} grains of {} m, more than {:.0e}",
+                tube.diameter, grain.diameter, MOST_GRAINS as f64
+            ),
+            "lengths are in metres: 8 mm are 8e-3",
+        );
+    }
     if drive.segments.is_some() && drive.waveform != "segments" {
         refuse(
             ProblemKind::Conflict,
@@ -235,6 +251,34 @@ fn stiffness(keys: &Keys, density: f64) -> f64 {
     of_impact.max(weight.max(pressed) / (OVERLAP_OF_A_LOAD * d))
 }
 
+/// Wavelengths in the tube.
+fn waves(tube: &TubeKeys) -> f64 {
+    let waves = |length: f64| (length / tube.wavelength).round().max(1.0);
+    tube.length.map_or(2.0, waves)
+}
+
+/// Their diameters in units of the mean one.
+fn sizes(grain: &GrainKeys) -> Grains {
+    Grains {
+        number: 0,
+        diameter_min: 1.0 - grain.spread,
+        diameter_max: 1.0 + grain.spread,
+        ..Grains::default()
+    }
+}
+
+fn number_of_grains(keys: &Keys) -> f64 {
+    let (tube, d) = (&keys.tube, keys.grain.diameter);
+    let (bore, length) = (tube.diameter / d, waves(tube) * tube.wavelength / d);
+    let volume = 1.5 * bore * bore * length / sizes(&keys.grain).mean_cubed_diameter();
+    (tube.fill * volume).round().max(1.0)
+}
+
+/// A component of a unit vector; one that is 0 but for rounding is 0.
+fn component(value: f64) -> f64 {
+    if value.abs() < 1e-15 { 0.0 } else { value }
+}
+
 /// A number with three digits.
 fn three_digits(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
@@ -256,18 +300,8 @@ fn written(keys: &Keys, name: &str) -> String {
     let radius = 0.5 * (bore + 1.0);
     let width = (1.0 - tube.occlusion) * bore + 1.0;
     let wavelength = tube.wavelength / d;
-    let waves = tube
-        .length
-        .map_or(2.0, |length| (length / tube.wavelength).round());
-    let waves = waves.max(1.0);
-    let sizes = Grains {
-        number: 0,
-        diameter_min: 1.0 - grain.spread,
-        diameter_max: 1.0 + grain.spread,
-    };
-    let length = waves * wavelength;
-    let volume = 1.5 * bore * bore * length / sizes.mean_cubed_diameter();
-    let number = (tube.fill * volume).round().max(1.0);
+    let (waves, sizes) = (waves(tube), sizes(grain));
+    let number = number_of_grains(keys);
     let widest = match drive.waveform.as_str() {
         "sine" => 2.0 * radius - 0.5 * width,
         _ => radius,
@@ -279,7 +313,8 @@ fn written(keys: &Keys, name: &str) -> String {
     let rings = 2.0 * (0.5 * WALL_SPHERES[1] * wavelength).ceil();
     let rings = rings.max(f64::from(least_rings));
     let angle = tube.incline.to_radians();
-    let gravity = [0.0, -keys.gravity * angle.cos(), keys.gravity * angle.sin()];
+    let [across, along] = [angle.cos(), angle.sin()].map(component);
+    let gravity = [0.0, -keys.gravity * across, keys.gravity * along];
     // Dp in the unit of pressure, k/d, as a body force.
     let pressure = drive.back_pressure * d / stiffness;
     let body_force =

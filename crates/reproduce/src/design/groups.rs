@@ -75,7 +75,7 @@ pub const ALL: [Group; GROUPS] = [
         scale: 0.2,
         by_ratio: None,
         value: |tube| {
-            let grains = tube.configuration.grains;
+            let grains = &tube.configuration.grains;
             0.5 * (grains.diameter_max - grains.diameter_min) / tube.diameter
         },
     },
@@ -150,7 +150,7 @@ pub fn groups(configuration: &Configuration) -> Option<[f64; GROUPS]> {
         return None;
     };
     let sphere = configuration.wall.sphere_diameter;
-    let grains = configuration.grains;
+    let grains = &configuration.grains;
     let tube = Tube {
         configuration,
         bore: 2.0 * configuration.tube.radius - sphere,

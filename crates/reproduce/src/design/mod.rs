@@ -82,7 +82,12 @@ pub struct Design {
 }
 
 impl Design {
-    /// The design that a configuration is; `None` where its wall is not prescribed or its wave stands still.
+    /// Whether a configuration is a design: its wall is prescribed and its wave moves.
+    pub fn serves(configuration: &Configuration) -> bool {
+        groups(configuration).is_some()
+    }
+
+    /// The design that a configuration is; `None` where it is none.
     pub fn of(configuration: &Configuration, estimate: Estimate) -> Option<Self> {
         let values = groups(configuration)?;
         let points = published();

@@ -1,5 +1,6 @@
 //! The figures of a run: charts of its measurements, and the tube from the side.
 
+mod discharge;
 mod profile;
 mod snapshot;
 
@@ -19,6 +20,7 @@ use crate::scene::{refused, units};
 use crate::summary::{Summary, word};
 use crate::tables::late_profile;
 
+use self::discharge::discharge;
 use self::profile::{profile, wall};
 use self::snapshot::snapshot;
 pub use self::snapshot::snapshot_stack;
@@ -32,7 +34,7 @@ const HEIGHT: f64 = 42.0;
 const SPACE_TIME_HEIGHT: f64 = 50.0;
 
 /// The names of all figures.
-pub(crate) const NAMES: [&str; 4] = ["flow", "profile", "snapshot", "wall"];
+pub(crate) const NAMES: [&str; 5] = ["discharge", "flow", "profile", "snapshot", "wall"];
 
 /// All figures of a run, by name. A static wave has no periods and no flow figure; without grains there is nothing to
 /// draw.
@@ -47,6 +49,9 @@ pub(crate) fn draw_all(
         Ok::<_, RunError>(())
     };
     let samples = run.recorder().samples();
+    if let Some(of_outlet) = summary.discharge.filter(|_| !samples.is_empty()) {
+        add("discharge", discharge(run, &of_outlet))?;
+    }
     if samples.iter().any(|it| it.flow_rate_ratio.is_finite()) {
         add("flow", flow(run, summary))?;
         let bins = late_profile(run);
@@ -123,10 +128,12 @@ fn scheduled_value(
     }
 }
 
-/// A number with six digits that say something at most: what SI has made of one has sixteen.
+/// A number as it was given, with up to six digits; what SI has made of one, with three.
 fn short(value: f64) -> String {
-    let rounded: Option<f64> = format!("{value:.5e}").parse().ok();
-    rounded.unwrap_or(value).to_string()
+    let with = |digits: usize| format!("{value:.0$e}", digits - 1).parse().unwrap_or(value);
+    let given: f64 = with(6);
+    let made: f64 = with(3);
+    if given == value { given } else { made }.to_string()
 }
 
 fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
@@ -273,8 +280,14 @@ mod tests {
 
     #[test]
     fn numbers_in_a_title_are_as_short_as_they_can_be() {
-        let numbers = [0.05, 9.617_819_417_918_985e-4, -1.814_898e-4, 2.84375, 0.0];
-        let texts = ["0.05", "0.000961782", "-0.00018149", "2.84375", "0"];
+        let numbers = [
+            0.05,
+            9.617_819_417_918_985e-4,
+            -1.814_898_7e-4,
+            2.84375,
+            0.0,
+        ];
+        let texts = ["0.05", "0.000962", "-0.000181", "2.84375", "0"];
         assert_eq!(numbers.map(short), texts);
     }
 

@@ -8,6 +8,7 @@ use peristalsis_observe::TubeShape;
 
 use super::title;
 use crate::run::Run;
+use crate::scene::units;
 use crate::spheres::{SeenSphere, seen_spheres};
 
 /// Length of tube that a snapshot shows at most, in wavelengths.
@@ -38,7 +39,12 @@ pub fn snapshot_stack(runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
 }
 
 fn draw(title: &str, runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
-    let views: Vec<SideView> = runs.iter().map(|(_, run)| SideView::of(run)).collect();
+    let (unit, fastest) = unit_of_speed(runs);
+    let views = runs.iter().map(|(_, run)| {
+        let speed = fastest.unwrap_or_else(|| run.configuration().wave_speed());
+        SideView::of(run, speed)
+    });
+    let views: Vec<SideView> = views.collect();
     let labelled = runs.iter().zip(&views);
     let snapshots: Vec<Snapshot<'_>> = labelled
         .map(|((label, _), view)| view.snapshot(label))
@@ -46,9 +52,34 @@ fn draw(title: &str, runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
     SnapshotFigure {
         title,
         snapshots: &snapshots,
+        speed: &unit,
         width: Width::DoubleColumn,
     }
     .draw()
+}
+
+/// What velocities are told over, in markup: the speed of the wave, or of the fastest grain where a wave stands.
+fn unit_of_speed(runs: &[(&str, &Run)]) -> (String, Option<f64>) {
+    let Some((_, still)) = runs
+        .iter()
+        .find(|(_, run)| run.configuration().wave_speed() == 0.0)
+    else {
+        return ("*c*".to_owned(), None);
+    };
+    let fastest = runs.iter().map(|(_, run)| largest_axial_speed(run));
+    let fastest = fastest.fold(0.0, f64::max);
+    let fastest = format!("{fastest:.1e}").parse().unwrap_or(fastest);
+    let time = units(still.configuration()).time();
+    (format!("({fastest} *d*/{time})"), Some(fastest))
+}
+
+/// |v_z| of the fastest grain \[d/t\].
+fn largest_axial_speed(run: &Run) -> f64 {
+    let bodies = run.simulation().bodies();
+    let velocities = bodies.velocity[..bodies.grains].iter();
+    velocities
+        .map(|velocity| velocity.z.abs())
+        .fold(0.0, f64::max)
 }
 
 /// What a snapshot shows of a run.
@@ -82,12 +113,12 @@ impl SideView {
         }
     }
 
-    fn of(run: &Run) -> Self {
+    /// Velocities are told over a speed; 0 leaves them out.
+    fn of(run: &Run, speed: f64) -> Self {
         let configuration = run.configuration();
         let simulation = run.simulation();
         let tube = simulation.wall().length();
         let heading = simulation.wall().heading();
-        let speed = configuration.wave_speed();
         // Drawn with the wave running to the right.
         let along = |z: f64| if heading > 0.0 { z } else { tube - z };
         let length = configuration.tube.wavelength * f64::from(configuration.tube.waves.min(WAVES));
@@ -131,6 +162,32 @@ impl SideView {
             length,
             tube,
             wavelength: configuration.tube.wavelength,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use peristalsis_configuration::Configuration;
+
+    use super::*;
+
+    #[test]
+    fn velocities_are_told_over_that_of_the_wave_or_of_the_fastest_grain() {
+        for (rate, told) in [("0.05", "*c*"), ("0", "(0.2 *d*/")] {
+            let settings = [
+                "grains.number=20",
+                "run.duration=1",
+                "body.gravity=[0, 0, -0.2]",
+                &format!("drive.strain_rate={rate}"),
+            ];
+            let configuration =
+                Configuration::from_preset("frictionless", &settings.map(str::to_owned));
+            let mut run = Run::new(configuration.expect("a configuration")).expect("a run");
+            while !run.is_complete() {
+                run.advance().expect("a step");
+            }
+            assert!(unit_of_speed(&[("", &run)]).0.starts_with(told));
         }
     }
 }

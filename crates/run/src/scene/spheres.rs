@@ -11,6 +11,8 @@ use super::{Aspect, Eye, PictureScene, Place, SECTION, WallLook};
 /// Colour of the wall.
 const STONE: [u8; 3] = [207, 202, 193];
 
+/// Grains so many radii from the axis have left the picture, or wait at the inlet of an open tube.
+const FAR: f64 = 2.75;
 /// Part of their size at which grains are drawn among the forces between them.
 const SHRUNK: f64 = 0.32;
 /// Part of the contacts whose force lies within the colours.
@@ -98,7 +100,9 @@ impl PictureScene {
         let places = match self.look.aspect {
             Aspect::Side => 0.0..self.shown,
             Aspect::Section(_) => {
-                let half = 0.5 * SECTION * self.wall.sphere_diameter();
+                let thickness = self.wall.sphere_diameter();
+                // A smooth wall may have none.
+                let half = 0.5 * SECTION * if thickness > 0.0 { thickness } else { 1.0 };
                 0.5 * length - half..0.5 * length + half
             }
         };
@@ -107,29 +111,45 @@ impl PictureScene {
         let [red, green, blue] = STONE;
         let stone = Colour::srgb(red, green, blue);
         let spheres = frame.position.iter().zip(&frame.diameter).enumerate();
+        let far = FAR * self.wall.usual_radius();
         let size = if self.look.contacts { SHRUNK } else { 1.0 };
+        let of_wall = |centre: DVec3, radius: f64| {
+            let is_before = centre.dot(towards_eye) > 0.0;
+            Some(Sphere {
+                centre,
+                radius,
+                colour: stone,
+                finish: self.wall_finish(is_before)?,
+            })
+        };
+        let seen = |z: f64| {
+            let z = (z - shift).rem_euclid(length);
+            places.contains(&z).then_some(z)
+        };
         let mut shown: Vec<Sphere> = spheres
             .filter_map(|(index, (&[x, y, z], diameter))| {
-                let centre = DVec3::new(x, y, (z - shift).rem_euclid(length));
-                if !places.contains(&centre.z) {
+                let centre = DVec3::new(x, y, seen(z)?);
+                if index >= frame.grains {
+                    return of_wall(centre, 0.5 * diameter);
+                }
+                if x.hypot(y) > far {
                     return None;
                 }
-                let (colour, finish) = if index < frame.grains {
-                    let [red, green, blue] = self.scale.srgb(values[index]);
-                    (Colour::srgb(red, green, blue), Finish::Opaque)
-                } else {
-                    let is_before = centre.dot(towards_eye) > 0.0;
-                    (stone, self.wall_finish(is_before)?)
-                };
-                let part = if index < frame.grains { size } else { 1.0 };
+                let [red, green, blue] = self.scale.srgb(values[index]);
                 Some(Sphere {
                     centre,
-                    radius: 0.5 * part * diameter,
-                    colour,
-                    finish,
+                    radius: 0.5 * size * diameter,
+                    colour: Colour::srgb(red, green, blue),
+                    finish: Finish::Opaque,
                 })
             })
             .collect();
+        if let Some(drawn) = self.wall.drawn(frame.time) {
+            shown.extend(drawn.prescribed_spheres().filter_map(|bead| {
+                let centre = bead.position.with_z(seen(bead.position.z)?);
+                of_wall(centre, 0.5 * bead.diameter)
+            }));
+        }
         if self.look.contacts {
             shown.extend(self.rods(frame));
         }

@@ -47,12 +47,22 @@ impl Pumping {
         };
         let beyond = |sample: &Sample| -power(sample) - efficiency * sample.wall_power;
         let power_error = error_of(late.iter().map(power));
+        let in_tube = match configuration.inlet {
+            // Grains come and go: those that are there count.
+            Some(_) => mean_of(late, |sample| sample.hold_up) / total_mass(configuration),
+            None => 1.0,
+        };
         Some(Self {
-            pressure_rise: configuration.pressure_rise(),
+            pressure_rise: in_tube * configuration.pressure_rise(),
             useful_power: (useful_power, power_error),
             efficiency: (efficiency, error_of(late.iter().map(beyond)) / wall_power),
         })
     }
+}
+
+/// Mass of all grains of a configuration \[m\].
+fn total_mass(configuration: &Configuration) -> f64 {
+    configuration.grains.number as f64 * configuration.mean_grain_mass()
 }
 
 /// Normal forces at the contacts of the grains in the late part of a run \[m d/t^2\].

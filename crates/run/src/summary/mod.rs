@@ -1,5 +1,6 @@
 //! The outcome of a run in numbers.
 
+mod discharge;
 mod late;
 mod local_flow;
 mod table;
@@ -10,6 +11,7 @@ use peristalsis_configuration::{Configuration, Units};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 
+pub use discharge::Discharge;
 pub use late::Pumping;
 use late::{ForceOfContacts, axial_dispersion, error_of, residence_time};
 use local_flow::LocalFlow;
@@ -65,6 +67,8 @@ pub struct Summary {
     pub energy_residual: f64,
     /// Pumping against a body force, where there is one.
     pub pumping: Option<Pumping>,
+    /// What passes through an open tube; `None` of a periodic one.
+    pub discharge: Option<Discharge>,
     /// Late mean of the pressure on the wall \[m/(d t^2)\].
     pub wall_pressure: f64,
     /// Largest late mean of it over the phases of the wave, each a bin of the profile wide \[m/(d t^2)\].
@@ -131,6 +135,7 @@ impl Summary {
             largest_overlap: simulation.ledger().largest_overlap,
             energy_residual: simulation.energy_residual(),
             pumping: Pumping::of(configuration, late),
+            discharge: Discharge::of(run, late),
             wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
             wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
             steps: simulation.step(),
@@ -190,6 +195,27 @@ impl Summary {
         let error = error_of(self.late.iter().map(|sample| sample.flow_rate));
         let in_si = |flow: f64| self.in_si(mass * flow, Units::mass_flow);
         Some((in_si(self.flow_rate())?, in_si(error)?))
+    }
+
+    /// Late mean of the mass that an open tube discharges and its error \[kg/s\]; `None` of a periodic one, or where the
+    /// configuration does not say its units.
+    pub fn discharge_rate_in_si(&self) -> Option<(f64, f64)> {
+        self.mass_rate_in_si(self.discharge?.rate)
+    }
+
+    /// A mass per time and its error \[m/t\] in SI \[kg/s\]; `None` where the configuration does not say its units.
+    pub fn mass_rate_in_si(&self, (rate, error): (f64, f64)) -> Option<(f64, f64)> {
+        let in_si = |rate: f64| self.in_si(rate, Units::mass_flow);
+        Some((in_si(rate)?, in_si(error)?))
+    }
+
+    /// Late mean of the mass between the ends of an open tube and its error \[kg\]; `None` as there.
+    pub fn hold_up_in_si(&self) -> Option<(f64, f64)> {
+        let (mass, error) = self.discharge?.hold_up;
+        Some((
+            self.in_si(mass, Units::mass)?,
+            self.in_si(error, Units::mass)?,
+        ))
     }
 
     /// Late mean of the normal force that 99 % of the contacts of grains do not exceed, and the largest

@@ -33,7 +33,7 @@ pub(super) fn warning(
         return Some(Warning { key, message });
     }
     let speed = configuration.wave_speed();
-    let (normal, grains) = (configuration.contact.normal, configuration.grains);
+    let (normal, grains) = (configuration.contact.normal, &configuration.grains);
     let parts = [grains.diameter_min, grains.diameter_max].map(|diameter| {
         let kinetic = 0.5 * diameter * diameter * diameter * speed * speed;
         kinetic / energy_to_pass(normal, lattice, widest, diameter)

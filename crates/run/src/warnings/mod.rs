@@ -9,6 +9,7 @@ mod warning;
 
 use peristalsis_configuration::{Configuration, Control, Schedule, ScheduledParameter};
 use peristalsis_physics::contact::NormalLaw;
+use peristalsis_physics::wall::Arrangement;
 
 pub use softness::overlap_at_wave_speed;
 pub use warning::Warning;
@@ -98,10 +99,17 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
         if opening <= 0.0 {
             let led = configuration.drive.schedule(ScheduledParameter::Width);
             let key = led.map_or("drive.width", |_| "drive.schedule");
-            let message = format!(
-                "the tube closes on itself: the clear opening of the bottleneck, w - d, is {opening:.2}; grains there \
-                 are squeezed through the wall"
-            );
+            let closes = "the tube closes on itself: the clear opening of the bottleneck, w - d";
+            let message = match configuration.tube.arrangement {
+                Arrangement::Smooth => format!(
+                    "{closes}, is {opening:.2}; a grain that it closes on is pressed into the wall by up to {:.2} d on \
+                     either side: soft grains there no longer pass for solid ones",
+                    0.5 * (configuration.grains.diameter_max - opening)
+                ),
+                _ => {
+                    format!("{closes}, is {opening:.2}; grains there are squeezed through the wall")
+                }
+            };
             warnings.push(Warning { key, message });
         }
     }

@@ -1,6 +1,9 @@
 //! What a run has seen that solid grains in a tight tube would not show.
 
 use peristalsis_configuration::{Configuration, Control};
+use peristalsis_physics::wall::Arrangement;
+
+use peristalsis_engine::STEPS_PER_LOOK;
 
 use super::softness::{LARGEST_OVERLAP, Material};
 use super::threshold;
@@ -30,6 +33,7 @@ pub(super) fn warnings(run: &Run) -> Vec<Warning> {
     }
     warnings.extend(left(run, packed > limit));
     warnings.extend(threshold::missed(run));
+    warnings.extend(ran_dry(run));
     warnings
 }
 
@@ -66,12 +70,34 @@ fn overlapped(configuration: &Configuration, overlap: f64, limit: f64) -> Warnin
     Warning { key, message }
 }
 
+/// Part of the looks at the inlet at which none waited, above which the inlet counts as dry.
+const DRY: f64 = 0.02;
+
+/// That the inlet would have put in grains, and none waited.
+fn ran_dry(run: &Run) -> Option<Warning> {
+    let ends = run.simulation().ends()?;
+    let steps = ends.passages().starved as f64 * STEPS_PER_LOOK as f64;
+    let part = steps / run.simulation().step().max(1) as f64;
+    let message = format!(
+        "for {:.0} % of the time the inlet had place for a grain, and none waited outside: the tube holds all {} grains, and \
+         is not filled to inlet.head; take more (grains.number and inlet.waiting)",
+        100.0 * part,
+        run.configuration().grains.number
+    );
+    let key = "inlet.waiting";
+    (part > DRY).then_some(Warning { key, message })
+}
+
 /// That grains have left the tube.
 fn left(run: &Run, is_too_dense: bool) -> Option<Warning> {
     let configuration = run.configuration();
     let most = run.recorder().escaped_most();
     let (key, advice) = match configuration.drive.control {
         _ if is_too_dense => ("grains.volume_fraction", "fewer grains"),
+        Control::Strain { .. } if configuration.tube.arrangement == Arrangement::Smooth => (
+            "run.time_step",
+            "stiffer contacts with shorter steps, a wider throat or a lower drive.strain_rate",
+        ),
         Control::Strain { .. } => (
             "tube.rings_per_wave",
             "more spheres per ring and more rings per wave, or a lower drive.strain_rate",

@@ -100,7 +100,7 @@ struct AxisKeys {
 #[expect(dead_code, reason = "as of an axis")]
 struct AxisRow(Vec<AxisValue>);
 
-/// A value of the key.
+/// A value of the key; a list of numbers is one value, such as of body.gravity.
 #[derive(JsonSchema)]
 #[serde(untagged)]
 #[expect(dead_code, reason = "as of an axis")]
@@ -108,6 +108,7 @@ enum AxisValue {
     Number(f64),
     Text(String),
     Boolean(bool),
+    Numbers(Vec<f64>),
 }
 
 /// JSON schema (draft 2020-12) of a study file.

@@ -135,8 +135,7 @@ impl Recording {
             sample: sample.map(Into::into),
             warnings: self.warnings.clone(),
         };
-        let spheres_per_ring = self.configuration.tube.spheres_per_ring as usize;
-        Ok(of_recording(&head, &frame, spheres_per_ring))
+        Ok(of_recording(&head, &frame, &self.wall))
     }
 
     /// Whether a frame is of this run.

@@ -3,7 +3,7 @@
 use peristalsis_analysis::number::{known_error, plain, with_error};
 use peristalsis_configuration::Units;
 use peristalsis_reproduce::report::plain_text;
-use peristalsis_run::{Pumping, Run, Summary};
+use peristalsis_run::{Discharge, Pumping, Run, Summary};
 
 use crate::commands::{counted, significant, unsigned_zero};
 use crate::progress::seconds;
@@ -56,7 +56,9 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         let load = if is_loaded { " without load" } else { "" };
         flow.push_str(&format!(" (a Newtonian fluid{load}: {newtonian:.4})"));
     }
-    if let Some(pumping) = &summary.pumping {
+    // Weight that carries grains through an open tube is no load.
+    let falls = |pumping: &&Pumping| summary.discharge.is_some() && pumping.pressure_rise <= 0.0;
+    if let Some(pumping) = summary.pumping.as_ref().filter(|it| !falls(it)) {
         let (rise, power) = (pumping.pressure_rise, pumping.useful_power.0);
         let in_si = (
             summary.in_si(rise, Units::pressure),
@@ -102,6 +104,9 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             ));
         }
     }
+    if let Some(discharge) = &summary.discharge {
+        flow.push_str(&through(discharge, summary));
+    }
     let mut text = format!(
         "{transition}\n{flow}\n{}, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} in {}: \
          {:.2} million grain-steps/s\n",
@@ -115,6 +120,40 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     );
     for diagnosis in &summary.wall_diagnosis {
         text.push_str(&format!("the wall: {diagnosis}\n"));
+    }
+    text
+}
+
+/// What passes through an open tube.
+fn through(discharge: &Discharge, summary: &Summary) -> String {
+    let measured = |(value, error)| plain_text(&with_error(value, error));
+    let in_words = |rate| match summary.mass_rate_in_si(rate) {
+        Some((rate, error)) => format!("{} kg/h", measured((3600.0 * rate, 3600.0 * error))),
+        None => format!("{} m/t", measured(rate)),
+    };
+    let rate = in_words(discharge.rate);
+    let hold_up = match summary.hold_up_in_si() {
+        Some(mass) => format!("{} kg are", measured(mass)),
+        None => format!("a mass of {} m is", measured(discharge.hold_up)),
+    };
+    let mut text = format!("\nthe outlet discharges {rate}; {hold_up} between the ends");
+    if discharge.return_rate.0 > 0.0 {
+        let back = in_words(discharge.return_rate);
+        text.push_str(&format!("; {back} go back through the inlet"));
+    }
+    if let Some(part) = discharge.refill_efficiency {
+        let part = measured(part);
+        text.push_str(&format!(
+            "; a stroke is filled with grains to {part} of its volume"
+        ));
+    }
+    if discharge.passed > 1 {
+        let (grains, time) = (
+            counted(discharge.passed, "grain"),
+            measured(discharge.residence),
+        );
+        let spread = significant(discharge.residence_variance.sqrt(), 3);
+        text.push_str(&format!("\n{grains} went from the inlet to the outlet, in {time} t on average (standard deviation {spread} t)"));
     }
     text
 }

@@ -40,12 +40,16 @@ fn by_looking_at_all(wall: &PrescribedWall, centre: DVec3, diameter: f64) -> BTr
 fn check(wall: &PrescribedWall, centre: DVec3, diameter: f64) -> usize {
     let expected = by_looking_at_all(wall, centre, diameter);
     let mut found = BTreeMap::new();
-    wall.for_each_touching(centre, diameter, |sphere, separation, _| {
-        assert!(
-            found.insert(sphere, separation).is_none(),
-            "sphere {sphere} twice"
-        );
-    });
+    wall.for_each_touching(
+        centre,
+        0.5 * (diameter + wall.sphere_diameter),
+        |sphere, separation, _| {
+            assert!(
+                found.insert(sphere, separation).is_none(),
+                "sphere {sphere} twice"
+            );
+        },
+    );
     let reach = 0.5 * (diameter + wall.sphere_diameter);
     for (sphere, apart) in &expected {
         // At the very edge rounding decides.

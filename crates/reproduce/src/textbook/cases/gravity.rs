@@ -53,6 +53,7 @@ impl Row {
         let throw = Throw {
             normal: spring(0.1),
             friction: FRICTION,
+            rolling: None,
             gravity: GRAVITY,
             slope,
             speed: 0.0,
@@ -102,7 +103,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
 fn contacts() -> [(&'static str, ContactModel); 2] {
     let normal = Normal::Linear(spring(0.1));
     [("smooth", None), ("rough", Some(FRICTION))]
-        .map(|(name, friction)| (name, ContactModel { normal, friction }))
+        .map(|(name, friction)| (name, ContactModel::new(normal, friction)))
 }
 
 fn falls(means: Means, setting: &str) -> Result<Vec<Check>> {

@@ -1,6 +1,7 @@
 //! The table of all cases, one file each.
 
 mod chain;
+mod cohesion;
 mod errors;
 mod gravity;
 mod haff;
@@ -10,6 +11,7 @@ mod oblique;
 mod plot;
 mod restitution;
 mod roll;
+mod rolling;
 mod spin;
 mod trial;
 mod viscoelastic;
@@ -27,6 +29,8 @@ pub const CASES: &[Case] = &[
     Case::new("spin", spin::PROSE, spin::examine),
     Case::new("slip-to-roll", roll::PROSE, roll::examine),
     Case::new("gravity", gravity::PROSE, gravity::examine),
+    Case::new("rolling", rolling::PROSE, rolling::examine),
+    Case::new("cohesion", cohesion::PROSE, cohesion::examine),
     Case::new("chain", chain::PROSE, chain::examine),
     Case::new("haff", haff::PROSE, haff::examine),
 ];

@@ -25,6 +25,7 @@ pub(super) const FRICTION: CundallStrack = CundallStrack {
 const THROW: Throw = Throw {
     normal: spring(0.1),
     friction: FRICTION,
+    rolling: None,
     gravity: 1e-4,
     slope: 0.0,
     speed: 0.02,

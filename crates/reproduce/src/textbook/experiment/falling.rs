@@ -5,6 +5,7 @@ use peristalsis_engine::initial::{InitialState, Packing, pack, settle};
 use peristalsis_engine::wall::PrescribedWall;
 use peristalsis_engine::{Bodies, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::ContactModel;
+use peristalsis_physics::sizes::Sizes;
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
 
 use super::{Means, far_away};
@@ -56,8 +57,7 @@ pub(crate) fn borne_weight(contact: ContactModel, means: Means, gravity: DVec3) 
     ));
     let packing = Packing {
         number: 30,
-        diameter_min: 0.8,
-        diameter_max: 1.0,
+        sizes: Sizes::Uniform([0.8, 1.0]),
         state: InitialState::Settled,
         axial_velocity: 0.0,
         seed: 1,

@@ -1,6 +1,7 @@
 //! Experiments with the engine itself: its kernels and integrators, through its public interface.
 
 pub(crate) mod chain;
+pub(crate) mod cohering;
 pub(crate) mod falling;
 pub(crate) mod gas;
 pub(crate) mod impact;
@@ -65,10 +66,7 @@ impl Means {
 
 /// A contact without friction.
 pub(crate) fn smooth(normal: Normal) -> ContactModel {
-    ContactModel {
-        normal,
-        friction: None,
-    }
+    ContactModel::new(normal, None)
 }
 
 /// A wall at rest: a straight tube.

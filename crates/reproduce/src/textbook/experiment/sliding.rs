@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Parameters, Simulation};
-use peristalsis_physics::contact::{ContactModel, CundallStrack, LinearSpringDashpot, Normal};
+use peristalsis_physics::contact::{
+    ContactModel, CundallStrack, LinearSpringDashpot, Normal, RollingResistance,
+};
 
 use super::{Means, plane};
 use crate::error::Result;
@@ -15,6 +17,7 @@ const PLANE_DIAMETER: f64 = 1e6;
 pub(crate) struct Throw {
     pub(crate) normal: LinearSpringDashpot,
     pub(crate) friction: CundallStrack,
+    pub(crate) rolling: Option<RollingResistance>,
     /// g \[d/t^2\]
     pub(crate) gravity: f64,
     /// tan(theta) of the plane, which falls along the throw.
@@ -61,8 +64,8 @@ impl Throw {
         let mut bodies = Bodies::grains_at_rest(vec![DVec3::new(off_axis, 0.0, height)], vec![1.0]);
         bodies.velocity[0] = DVec3::new(0.0, self.speed, 0.0);
         let contact = ContactModel {
-            normal: Normal::Linear(self.normal),
-            friction: Some(self.friction),
+            rolling: self.rolling,
+            ..ContactModel::new(Normal::Linear(self.normal), Some(self.friction))
         };
         let parameters = Parameters {
             body_force: self.weight(),

@@ -279,7 +279,7 @@ mod tests {
 
     fn impact(friction: Option<CundallStrack>, velocity: DVec3) -> Impact {
         let normal = Normal::Linear(SPRING);
-        Impact::between(ContactModel { normal, friction }, velocity, DVec3::ZERO)
+        Impact::between(ContactModel::new(normal, friction), velocity, DVec3::ZERO)
     }
 
     #[test]

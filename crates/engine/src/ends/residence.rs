@@ -1,0 +1,104 @@
+//! How long grains stay in an open tube.
+
+/// Most bins of the distribution.
+const BINS: usize = 256;
+
+/// Residence times: number, mean and variance, and how they are distributed over bins of equal width.
+///
+/// The bins are few whatever the run: where a time lies beyond them, every two become one, twice as wide.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Residence {
+    number: u64,
+    mean: f64,
+    /// Sum of squared differences from the mean \[t^2\].
+    squares: f64,
+    /// Width of a bin \[t\].
+    width: f64,
+    bins: Vec<u64>,
+}
+
+impl Residence {
+    /// None yet; bins begin with this width \[t\].
+    pub(crate) fn new(width: f64) -> Self {
+        Self {
+            number: 0,
+            mean: 0.0,
+            squares: 0.0,
+            width,
+            bins: Vec::new(),
+        }
+    }
+
+    /// Whether it can be one of [`Residence::new`].
+    pub(crate) fn fits(&self) -> bool {
+        self.width > 0.0 && self.bins.len() <= BINS && self.bins.iter().sum::<u64>() == self.number
+    }
+
+    /// Adds a time \[t\].
+    pub(crate) fn add(&mut self, time: f64) {
+        self.number += 1;
+        let off = time - self.mean;
+        self.mean += off / self.number as f64;
+        self.squares += off * (time - self.mean);
+        while time >= self.width * BINS as f64 {
+            self.width *= 2.0;
+            let pairs = self.bins.chunks(2).map(|pair| pair.iter().sum());
+            self.bins = pairs.collect();
+        }
+        let bin = ((time / self.width) as usize).min(BINS - 1);
+        if self.bins.len() <= bin {
+            self.bins.resize(bin + 1, 0);
+        }
+        self.bins[bin] += 1;
+    }
+
+    /// How many there are.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// Their mean; NaN of none \[t\].
+    pub fn mean(&self) -> f64 {
+        if self.number == 0 {
+            f64::NAN
+        } else {
+            self.mean
+        }
+    }
+
+    /// Their variance, with the divisor n - 1; NaN below two \[t^2\].
+    pub fn variance(&self) -> f64 {
+        match self.number {
+            0 | 1 => f64::NAN,
+            number => self.squares / (number - 1) as f64,
+        }
+    }
+
+    /// Width of a bin \[t\], and the number of times in each from 0 on.
+    pub fn distribution(&self) -> (f64, &[u64]) {
+        (self.width, &self.bins)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_of_any_length_keep_their_moments_in_few_bins() {
+        let mut residence = Residence::new(0.5);
+        let times = || (0..10_000_u32).map(|k| f64::from(k) * 0.25);
+        times().for_each(|time| residence.add(time));
+        assert!(residence.fits());
+        assert_eq!(residence.number(), 10_000);
+        // Mean and variance of equally spaced numbers.
+        assert!((residence.mean() / (0.25 * 9999.0 / 2.0) - 1.0).abs() < 1e-12);
+        let variance = 0.0625 * 10_000.0 * 10_001.0 / 12.0;
+        assert!((residence.variance() / variance - 1.0).abs() < 1e-12);
+        let (width, bins) = residence.distribution();
+        // 2500 in 256 bins of 0.5 2^5.
+        assert_eq!((width, bins.len()), (16.0, 157));
+        assert!(bins[..156].iter().all(|&bin| bin == 64));
+        assert_eq!(bins.iter().sum::<u64>(), 10_000);
+    }
+}

@@ -1,0 +1,106 @@
+//! Rolling resistance: a sphere on an incline, and one that comes to rest on a plane.
+
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
+use peristalsis_physics::contact::RollingResistance;
+
+use super::plot::points;
+use super::restitution::spring;
+use super::roll;
+use crate::columns::Columns;
+use crate::error::Result;
+use crate::textbook::case::Circumstances;
+use crate::textbook::experiment::Means;
+use crate::textbook::experiment::sliding::Throw;
+use crate::{Check, Finding, Prose};
+
+pub(super) const PROSE: Prose = Prose::new(include_str!("rolling.md"));
+
+const ROLLING: RollingResistance = RollingResistance {
+    rolling_friction: 0.1,
+    rolling_stiffness: 1.0,
+    rolling_damping: 0.1,
+};
+
+/// On a level plane, thrown without spin.
+const THROW: Throw = Throw {
+    normal: spring(0.1),
+    friction: roll::FRICTION,
+    rolling: Some(ROLLING),
+    gravity: 1e-4,
+    slope: 0.0,
+    speed: 0.02,
+};
+const TIME_STEP: f64 = 0.05;
+const DURATION: f64 = 400.0;
+/// tan(theta) of the inclines: at all of them the sphere rolls without slip, if it does.
+const SLOPES: [f64; 9] = [0.03, 0.06, 0.09, 0.098, 0.102, 0.12, 0.2, 0.4, 0.8];
+
+/// a/g of a solid sphere on an incline of this slope.
+fn acceleration(slope: f64) -> f64 {
+    let cosine = 1.0 / (1.0 + slope * slope).sqrt();
+    5.0 / 7.0 * cosine * (slope - ROLLING.rolling_friction).max(0.0)
+}
+
+/// a/g in the second half of a throw.
+fn late_acceleration(throw: &Throw, means: Means) -> Result<f64> {
+    let course = throw.simulate(means, TIME_STEP, DURATION)?;
+    let [middle, last] = [course.len() / 2, course.len() - 1].map(|step| course[step]);
+    Ok((last.velocity - middle.velocity) / (throw.gravity * (last.time - middle.time)))
+}
+
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
+    let mut finding = PROSE.described(&[]);
+    let mut rows = Vec::new();
+    for means in Means::INTEGRATORS {
+        circumstances.go_on()?;
+        let name = means.name();
+        for slope in SLOPES {
+            let throw = Throw {
+                slope,
+                speed: 0.0,
+                ..THROW
+            };
+            let (expected, found) = (acceleration(slope), late_acceleration(&throw, means)?);
+            let setting = format!("tan(theta) = {slope}, {name}");
+            let check = Check::absolute(
+                "a/g from rest on an incline",
+                &setting,
+                expected,
+                found,
+                1e-3,
+            );
+            finding.checks.push(check.by("held, or rolling"));
+            if means == Means::USUAL {
+                rows.push((slope, found));
+            }
+        }
+        let slowed = -late_acceleration(&THROW, means)?;
+        let expected = 5.0 / 7.0 * ROLLING.rolling_friction;
+        let quantity = "deceleration of a sphere that rolls on a plane, over g";
+        let check = Check::relative(quantity, name, expected, slowed, 5e-3);
+        finding.checks.push(check.by("5/7 mu_r"));
+    }
+    finding.data = Some(
+        Columns::of(&rows)
+            .number("slope", "1", "tan(theta)", |row| row.0)
+            .number("acceleration", "1", "a/g", |row| row.1)
+            .table()?,
+    );
+    finding.figures = vec![PROSE.chart("rolling-resistance", &[], drawing(&rows))?];
+    Ok(finding)
+}
+
+fn drawing(rows: &[(f64, f64)]) -> ChartFigure {
+    let slopes: Vec<f64> = (0..=90_u32).map(|step| 0.01 * f64::from(step)).collect();
+    let values: Vec<f64> = slopes.iter().map(|slope| acceleration(*slope)).collect();
+    let closed_form = Line::new("closed form", &slopes, &values)
+        .tint(Tint::Black)
+        .pattern(Pattern::Dashed);
+    let panel = ChartPanel::new("slope tan *θ*", "acceleration *a*/*g*")
+        .x_range(0.0..=0.9)
+        .y_range(-0.02..=0.45)
+        .with(closed_form)
+        .with(Reference::vertical(ROLLING.rolling_friction).label("*μ*_{r}"))
+        .with(points("a sphere from rest", rows, |row| *row).series(0));
+    ChartFigure::new(panel)
+}

@@ -1,0 +1,59 @@
+//! What passes through an open tube.
+
+use core::f64::consts::PI;
+
+use peristalsis_observe::{Sample, clear_volume};
+
+use super::late::error_of;
+use super::mean_of;
+use crate::run::Run;
+
+/// The flow through an open tube: late means, each with its error from block averages. Units: d, m, t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Discharge {
+    /// Mass that leaves through the outlet, per time.
+    pub rate: (f64, f64),
+    /// Mass that leaves through the inlet, against the flow, per time.
+    pub return_rate: (f64, f64),
+    /// Mass between the ends.
+    pub hold_up: (f64, f64),
+    /// Mass that has left through the outlet since the start.
+    pub discharged: f64,
+    /// Grains that have gone from the inlet to the outlet in the whole run.
+    pub passed: u64,
+    /// Mean time that they took, and its error; NaN of too few.
+    pub residence: (f64, f64),
+    /// Variance of that time.
+    pub residence_variance: f64,
+    /// Volume of the grains discharged in a period over the clear volume of a wavelength; `None` of a static wave.
+    pub refill_efficiency: Option<(f64, f64)>,
+}
+
+impl Discharge {
+    /// Of the late samples of a run; `None` of a periodic tube.
+    pub(super) fn of(run: &Run, late: &[Sample]) -> Option<Self> {
+        let (configuration, simulation) = (run.configuration(), run.simulation());
+        let ends = simulation.ends()?;
+        let measured =
+            |value: fn(&Sample) -> f64| (mean_of(late, value), error_of(late.iter().map(value)));
+        let residence = ends.residence();
+        let (passed, variance) = (residence.number(), residence.variance());
+        let rate = measured(|sample| sample.discharge_rate);
+        let refill_efficiency = configuration.drive.period().map(|period| {
+            let stroke = clear_volume(simulation) / f64::from(configuration.tube.waves);
+            // A grain of mass m has the volume pi m/6.
+            let part = period * PI / 6.0 / stroke;
+            (part * rate.0, part * rate.1)
+        });
+        Some(Self {
+            rate,
+            return_rate: measured(|sample| sample.return_rate),
+            hold_up: measured(|sample| sample.hold_up),
+            discharged: late.last().map_or(0.0, |sample| sample.discharged),
+            passed,
+            residence: (residence.mean(), (variance / passed as f64).sqrt()),
+            residence_variance: variance,
+            refill_efficiency,
+        })
+    }
+}
