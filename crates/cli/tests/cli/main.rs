@@ -212,7 +212,9 @@ fn collect(root: &Path, folder: &Path, found: &mut Inventory) {
             found.insert(name, None);
             collect(root, &path, found);
         } else {
-            let read = || Ok((std::fs::read(&path)?, path.metadata()?.modified()?));
+            let read = || -> std::io::Result<_> {
+                Ok((std::fs::read(&path)?, path.metadata()?.modified()?))
+            };
             match read() {
                 Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
                 file => {
