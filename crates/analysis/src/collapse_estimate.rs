@@ -63,9 +63,9 @@ impl<'a> Collapse<'a> {
     ///
     /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of it,
     /// by random numbers of `seed`. Without a correction the errors hold only where there is none: a small one hides in the
-    /// exponents and fits well. The fit is therefore compared with those that allow for c = -1 and 1, and not trusted where one of them may take a parameter out of its
-    /// interval of 95 per cent. Look at [`doubts`](CollapseEstimate::doubts). Compare Harada, Phys. Rev. E 84, 056704
-    /// (2011).
+    /// exponents and fits well. The fit is therefore compared with those that allow for c = -1 and 1. It is not trusted
+    /// where one of them may take a parameter out of its interval of 95 per cent. Look at
+    /// [`doubts`](CollapseEstimate::doubts). Compare Harada, Phys. Rev. E 84, 056704 (2011).
     ///
     /// # Errors
     /// [`Error::NoOverlap`] with the best overlap where no start finds enough, [`Error::TooFew`] below 2 curves, without

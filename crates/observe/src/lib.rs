@@ -1,10 +1,11 @@
 //! Observables: numbers read off a simulation without touching it.
 //!
-//! A [`View`] is a simulation as it is, looked at once; [`Observer`] turns views into one [`Sample`] an interval; [`columns::COLUMNS`] is the table of what a sample
-//! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
-//! the wave frame, [`WaveByWave`] the flow of each wave over each period,
-//! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow
-//! how grains turn; [`Load`] is what they bear, [`ContactForces`] what may break them.
+//! - A [`View`] is a simulation as it is, looked at once. [`Observer`] turns views into one [`Sample`] an interval.
+//!   [`columns::COLUMNS`] is the table of what a sample holds, from which files and documentation follow.
+//! - [`WaveFrameProfile`] averages density, velocity and temperature in the wave frame, [`WaveByWave`] the flow of each
+//!   wave over each period.
+//! - [`AxialDispersion`] says how grains drift apart, [`TubeShape`] the wall's radius, [`Orientations`] how grains turn,
+//!   [`Load`] what they bear, [`ContactForces`] what may break them.
 
 #![forbid(unsafe_code)]
 

@@ -151,6 +151,12 @@ impl Row {
         times.first().copied().filter(|time| !time.is_nan())
     }
 
+    /// Whether a grain was outside the tube at any sample.
+    pub(crate) fn leaks(&self) -> bool {
+        let most = self.table.integers("escaped_most");
+        most.is_ok_and(|most| most.first().is_some_and(|most| *most > 0))
+    }
+
     /// A table without rows, for studies without a finished run.
     pub(crate) fn no_rows() -> Table {
         joined(columns().map(|column| {

@@ -1,9 +1,9 @@
 //! Contact mechanics: the force that two touching spheres exert on each other.
 //!
 //! A contact law is a pair: a [`NormalLaw`] (one file each: [`linear`], [`hertz`]) and a [`TangentialLaw`]
-//! ([`tangential`]; [`general`] with [`rolling`] resistance and [`cohesion`]). Both are stateless parameter structs; the memory of a contact is the [`TangentialLaw::History`]
-//! of the law that needs it, so that law and history cannot disagree. [`ContactLaw::force`] is the only place where
-//! the two are put together; every kernel calls it.
+//! ([`tangential`]; [`general`] with [`rolling`] resistance and [`cohesion`]). Both are structs of parameters without
+//! state. The memory of a contact is the [`TangentialLaw::History`] of the law that needs it, so that law and history
+//! cannot disagree. [`ContactLaw::force`] alone puts the two together; every kernel calls it.
 
 pub mod cohesion;
 pub mod general;

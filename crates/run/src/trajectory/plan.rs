@@ -154,9 +154,12 @@ impl TrajectoryPlan {
         // A trajectory that begins in the middle of a run keeps to the frames that it would have had from the start.
         let first = from + now.saturating_sub(from).div_ceil(interval) * interval;
         if first > to {
+            let time = |step| step as f64 * configuration.run.time_step;
             let reason = format!(
-                "its window holds none of its frames: the run goes from step {now} to step {end}, the window from \
-                 {from} to {to}"
+                "none of its frames lies in the window: the run goes from t = {} to t = {}, the window begins at t = {}",
+                time(now),
+                time(end),
+                time(from)
             );
             let help = WINDOW_HELP;
             return Err(RunError::Trajectory { reason, help });

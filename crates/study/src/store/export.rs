@@ -23,6 +23,8 @@ pub struct Exported {
     pub replaced: Vec<PathBuf>,
     /// Finished runs in the table.
     pub rows: usize,
+    /// Those among them that lost grains through the wall.
+    pub leaking: usize,
     /// Runs of the plan that are not finished.
     pub missing: usize,
     /// Runs that turned out not to be what had been sealed; they were moved aside, and are missing.
@@ -101,6 +103,7 @@ impl Store {
             files: Vec::new(),
             replaced: Vec::new(),
             rows: finished.len(),
+            leaking: finished.iter().filter(|it| it.row.leaks()).count(),
             missing: survey.plan.runs().len() - finished.len(),
             quarantined,
         };

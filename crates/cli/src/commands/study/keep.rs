@@ -82,6 +82,13 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     if missing > 0 {
         say(&format!("not finished yet: {}", counted(missing, "run")));
     }
+    if exported.leaking > 0 {
+        say(&format!(
+            "grains escaped in {} of {}: see the column escaped_most",
+            exported.leaking,
+            counted(exported.rows, "run")
+        ));
+    }
     for file in &exported.files {
         print(&format!("{}\n", file.display()))?;
     }

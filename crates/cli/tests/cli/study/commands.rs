@@ -24,6 +24,28 @@ fn first(place: &Place) -> String {
 }
 
 #[test]
+fn an_export_says_in_how_many_runs_grains_escaped() {
+    let place = place_of(
+        r#"
+name = "leaking"
+preset = "frictionless"
+[base]
+grains.number = 20
+tube.waves = 2
+run.periods = 4
+drive.width = 2.3
+drive.strain_rate = 0.1
+[[axes]]
+key = "tube.spheres_per_ring"
+values = [3, 24]
+"#,
+    );
+    place.does("study run study.toml --store store");
+    let exported = place.does("study export store --out tables");
+    exported.says(&["grains escaped in 1 of 2 runs: see the column escaped_most"]);
+}
+
+#[test]
 fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
     let place = place_of(&format!(
         "{STUDY}[refine]\nkey = \"drive.width\"\ntolerance = 0.1\n"
