@@ -96,8 +96,8 @@ CASES = [
     _pair("hertz-friction", "Hertz with friction, B 0.15, k_t 1, mu 0.5", Hertz(0.15, Friction(1.0, 0.5)), 0.5, 0.02, 0.05),
     _pair("rolling", "friction and rolling resistance, tiny overlap", Linear(0.0, STICKY, Rolling(0.2, 0.05)), 0.5, TINY, TINY),
     _pair("pull", "Hertz with a constant pull (DMT), oblique", Hertz(0.0, cohesion_force=1e-3), 0.5, 0.05, duration=24.0),
-    # So slow that they never part, for LAMMPS breaks the contact at the pull-off force already.
     _pair("jkr", "JKR, oblique, sticks", Hertz(0.0, surface_energy=1e-3), 0.5, 0.001, duration=24.0),
+    _pair("jkr-parts", "JKR, oblique, parts", Hertz(0.0, surface_energy=1e-3), 0.5, 0.1, duration=24.0),
 ]
 QUICK_LEAST_STEP, QUICK_TOLERANCE = 1e-4, 5e-5
 

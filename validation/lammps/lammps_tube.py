@@ -17,8 +17,6 @@ from tubes import COLUMNS, Course, Grains, Tube
 GRAIN, WALL = 1, 2
 # LAMMPS takes densities: a sphere of diameter and mass 1.
 UNIT_DENSITY = 6 / np.pi
-# Grains that get so far beyond the wall are lost.
-MARGIN = 8.0
 
 
 def load() -> Any:
@@ -52,7 +50,7 @@ def run(tube: Tube, grains: Grains, frames: int, steps: int, with_wall: bool = T
 
 def _prepare(instance: Any, tube: Tube, grains: Grains, with_wall: bool) -> None:
     lattice = tube.lattice
-    half = lattice.radius + MARGIN
+    half = tube.half_box
     instance.commands_list(
         [
             "units lj",

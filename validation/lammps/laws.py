@@ -60,7 +60,8 @@ class Hertz:
     """f_n = K sqrt(R) (xi^(3/2) - B sqrt(xi) v_n), never negative; K = 2 Y/(3 (1 - nu^2)), Y = 1, nu = 1/2.
 
     With cohesion of one kind, and then without damping, which LAMMPS does not cut: a constant pull of 4 R f_c in contact
-    (Derjaguin, Mueller and Toporov), or the adhesion of Johnson, Kendall and Roberts.
+    (Derjaguin, Mueller and Toporov), or the adhesion of Johnson, Kendall and Roberts, which in LAMMPS breaks at the pull-off
+    force: `pull_off` is ours alone.
     """
 
     relaxation_time: float
@@ -68,6 +69,7 @@ class Hertz:
     rolling: Rolling | None = None
     cohesion_force: float = 0.0
     surface_energy: float = 0.0
+    pull_off: str = "force"
 
     @property
     def is_plain(self) -> bool:
@@ -78,6 +80,7 @@ class Hertz:
         return 2 / (3 * (1 - POISSON_RATIO**2))
 
     def settings(self) -> dict[str, object]:
+        necks: dict[str, object] = {"contact.pull_off": self.pull_off} if self.surface_energy else {}
         return {
             "contact.law": "hertz",
             "contact.young_modulus": 1.0,
@@ -86,7 +89,7 @@ class Hertz:
             "contact.dissipation_time": self.relaxation_time,
             "contact.cohesion_force": self.cohesion_force,
             "contact.surface_energy": self.surface_energy,
-        } | _friction_settings(self.friction) | _rolling_settings(self.rolling)
+        } | necks | _friction_settings(self.friction) | _rolling_settings(self.rolling)
 
     def commands(self) -> list[str]:
         """LAMMPS: damping `viscoelastic` is gamma m_ij sqrt(R xi); `limit_damping` cuts the force at 0.

@@ -17,7 +17,7 @@ from store import Store
 from tubes import COARSE, FINE, Course, Tube
 
 NAME, FRICTIONAL_NAME, GRAVITY_NAME = "stationary", "friction", "gravity"
-ROLLING_NAME, COHESION_NAME = "rolling", "cohesion"
+ROLLING_NAME, COHESION_NAME, JKR_NAME = "rolling", "cohesion", "jkr"
 SAMPLES_PER_PERIOD = 20
 OURS, THEIRS = "peristalsis", "LAMMPS"
 # No packing is used twice: the programs' samples are independent.
@@ -27,10 +27,14 @@ FRICTIONAL = Linear(0.0, Friction(0.3, 0.5))
 ROLLING = Linear(0.0, Friction(0.3, 0.5), Rolling(0.3, 0.1))
 # A constant pull, the cohesion that both programs have alike to the end of a contact.
 COHESIVE = Hertz(0.0, cohesion_force=1e-3)
+ADHESIVE = Hertz(0.0, surface_energy=1e-3)
+ADHESIVE_FRICTIONAL = Hertz(0.0, Friction(1.0, 0.5), surface_energy=1e-3)
 FRICTIONAL_HERTZ = Hertz(0.15, Friction(1.0, 0.5))
 VOLUME_FRACTION = 0.15
 # A round is one run of LAMMPS and four of ours at each point. Slow ones take two rounds, some minutes each.
 ROUNDS, SLOW_ROUNDS, QUICK_ROUNDS = 6, 2, 2
+# Rounds of cohesion by a constant pull.
+PULL_ROUNDS = 8
 RUNS_OF_A_ROUND = {OURS: 4, THEIRS: 1}
 
 
@@ -108,8 +112,13 @@ ROLLING_POINTS = [
     Point("rolling", COARSE, 0.05, 2.6, "jammed", 6, 20, ROLLING, ROUNDS),
 ]
 COHESION_POINTS = [
-    Point("pull", COARSE, 0.02, 2.75, "rest", 6, 20, COHESIVE, ROUNDS),
-    Point("pull", COARSE, 0.05, 2.6, "jammed", 6, 20, COHESIVE, ROUNDS),
+    Point("pull", COARSE, 0.02, 2.75, "rest", 6, 20, COHESIVE, PULL_ROUNDS),
+    Point("pull", COARSE, 0.05, 2.6, "jammed", 6, 20, COHESIVE, PULL_ROUNDS),
+]
+JKR_POINTS = [
+    Point("smooth", COARSE, 0.02, 2.75, "rest", 6, 20, ADHESIVE, ROUNDS),
+    Point("smooth", COARSE, 0.05, 2.6, "jammed", 6, 20, ADHESIVE, ROUNDS),
+    Point("frictional", COARSE, 0.02, 2.75, "rest", 6, 20, ADHESIVE_FRICTIONAL, ROUNDS),
 ]
 QUICK_POINTS = ("coarse-0.05-2.75-rest", "coarse-0.05-2.85-rest")
 QUICK_FRICTIONAL_POINTS = ("linear-0.02-2.75-rest",)
@@ -131,7 +140,7 @@ def observe(point: Point, program: str, seed: int, own: OwnTube) -> dict[str, fl
     frames = point.last_period * SAMPLES_PER_PERIOD
     grains = own.pack(point.tube, VOLUME_FRACTION, point.start, seed)
     run: Callable[..., Course] = own.run if program == OURS else lammps_tube.run
-    course = run(point.tube, grains, frames, steps)
+    course = run(point.tube, grains, frames, steps).in_box()
     return asdict(Observed.of(course, point.first_period * SAMPLES_PER_PERIOD))
 
 

@@ -14,6 +14,8 @@ from start_files import Lattice
 Array = npt.NDArray[np.float64]
 # Numbers of a grain in a frame: position, velocity, angular velocity.
 COLUMNS = 9
+# Grains that get so far beyond the wall are lost.
+MARGIN = 8.0
 
 COARSE = Lattice(radius=1.5, wavelength=10.0, waves=10, spheres_per_ring=12, rings_per_wave=14)
 FINE = Lattice(radius=1.5, wavelength=10.0, waves=10, spheres_per_ring=24, rings_per_wave=26)
@@ -49,6 +51,11 @@ class Tube:
     time_step: float = 0.05
     # The acceleration of every grain by its weight, m d/t^2 a grain.
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    @property
+    def half_box(self) -> float:
+        """Half the width of the box that LAMMPS has around the tube."""
+        return self.lattice.radius + MARGIN
 
     @property
     def amplitude(self) -> float:
@@ -92,6 +99,13 @@ class Course:
 
     def time(self, frame: int) -> float:
         return frame * self.interval
+
+    def in_box(self) -> Course:
+        """Without the grains that have left the box, from then on: LAMMPS loses them, and ours fly on without contacts."""
+        left = (np.abs(self.positions[:, :, 0:2]) > self.tube.half_box).any(axis=2)
+        frames = self.frames.copy()
+        frames[np.logical_or.accumulate(left, axis=0)] = np.nan
+        return Course(self.tube, self.interval, frames)
 
     @property
     def positions(self) -> Array:

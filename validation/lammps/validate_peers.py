@@ -33,6 +33,7 @@ NAMES = (
     stationary.GRAVITY_NAME,
     stationary.ROLLING_NAME,
     stationary.COHESION_NAME,
+    stationary.JKR_NAME,
 )
 
 
@@ -64,6 +65,7 @@ class Work:
             stationary.GRAVITY_NAME: self._gravity,
             stationary.ROLLING_NAME: self._rolling,
             stationary.COHESION_NAME: self._cohesion,
+            stationary.JKR_NAME: self._jkr,
         }
         return makers[name]()
 
@@ -107,6 +109,10 @@ class Work:
     def _cohesion(self) -> Section:
         points, found = self._statistics(stationary.COHESION_POINTS, (stationary.COHESION_POINTS[0].name,))
         return sections.of_statistics(stationary.COHESION_NAME, found, points, stationary.COMPARED)
+
+    def _jkr(self) -> Section:
+        points, found = self._statistics(stationary.JKR_POINTS, (stationary.JKR_POINTS[0].name,))
+        return sections.of_statistics(stationary.JKR_NAME, found, points, stationary.COMPARED)
 
     def _statistics(self, points: list[Point], quick: tuple[str, ...]) -> tuple[list[Point], Samples]:
         """The points of this call, and their runs."""

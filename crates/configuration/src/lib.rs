@@ -52,8 +52,8 @@ pub use layers::{file_with_overrides, join};
 pub use limits::MOST_GRAINS;
 pub use materials::{MATERIALS, Material, material};
 pub use peristalsis_physics::contact::{
-    Cohesion, ContactModel, CundallStrack, DissipationForm, Elasticity, Normal, RollingResistance,
-    Sliding,
+    Cohesion, ContactModel, CundallStrack, DissipationForm, Elasticity, Normal, PullOff,
+    RollingResistance, Sliding,
 };
 pub use peristalsis_physics::ends::{Ends, Inlet};
 pub use peristalsis_physics::method::{InitialState, Integrator, Kernel};

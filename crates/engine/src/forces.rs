@@ -36,10 +36,11 @@ impl<N: NormalLaw, T: TangentialLaw> Stepper for Reference<'_, N, T> {
         Ok(())
     }
 
-    fn contact_energy(&mut self, wall: &Wall) -> f64 {
+    fn tally(&mut self, wall: &Wall) -> Tally {
         let (mut bodies, mut contacts) = (self.bodies.clone(), self.contacts.clone());
-        contacts.refresh(&bodies, wall, self.parameters.skin);
-        evaluate(self.law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
+        let (parameters, time_step) = (self.parameters, self.parameters.time_step);
+        contacts.refresh(&bodies, wall, parameters.skin);
+        evaluate(self.law, &mut bodies, wall, &mut contacts, time_step)
     }
 
     fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {

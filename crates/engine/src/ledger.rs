@@ -75,6 +75,16 @@ impl Tally {
         self.total_overlap += other.total_overlap;
     }
 
+    /// Elastic energy of contacts, with what contacts lost in this step other than along their normals.
+    pub(crate) fn stored_and_lost(&self) -> f64 {
+        self.contact_energy
+            + self.tangential_lost
+            + self.sliding_lost
+            + self.rolling_lost
+            + self.cohesion_lost
+            + self.history_reset
+    }
+
     /// Elastic energy of contacts, network and tethers.
     pub fn potential_energy(&self) -> f64 {
         self.contact_energy + self.network_energy + self.keep_energy

@@ -11,8 +11,8 @@ pub(crate) trait Stepper {
     /// The first call completes the velocities of the step before, where [`Stepper::finish`] has not.
     fn move_spheres(&mut self) -> Result<(), Runaway>;
 
-    /// Elastic energy of the contacts with the wall as it stands; no contact history moves on.
-    fn contact_energy(&mut self, wall: &Wall) -> f64;
+    /// Sums of the step with the wall as it stands; no contact history moves on.
+    fn tally(&mut self, wall: &Wall) -> Tally;
 
     /// Works out all forces at the end of the step. Sums that only observers read may be left out unless `complete`.
     fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally;
@@ -49,14 +49,14 @@ impl Course {
             let time = self.time();
             kernel.move_spheres()?;
 
-            // A wall that jumps does work on the contacts that it finds: the difference of what they store after and
-            // before the jump.
+            // A wall that jumps does work on the contacts that it finds: the difference of what they store and lose after
+            // the jump and would without it.
             let jumps = self.wall.move_without_jump(time - self.time_step, time);
-            let stored_before_jump = jumps.then(|| kernel.contact_energy(&self.wall));
+            let without_jump = jumps.then(|| kernel.tally(&self.wall).stored_and_lost());
             self.wall.move_to(time);
             let after = kernel.evaluate(&self.wall, remaining == 0 || jumps);
-            if let Some(stored) = stored_before_jump {
-                self.ledger.add_jump(after.contact_energy - stored);
+            if let Some(without_jump) = without_jump {
+                self.ledger.add_jump(after.stored_and_lost() - without_jump);
             }
             self.ledger.add_step(&self.tally, &after, self.time_step);
             self.tally = after;

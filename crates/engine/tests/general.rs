@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use peristalsis_physics::contact::{Cohesion, RollingResistance};
+use peristalsis_physics::contact::{Cohesion, PullOff, RollingResistance};
 
 /// With one coefficient forces are continuous where a contact begins to slide.
 const ONE_FRICTION: CundallStrack = CundallStrack {
@@ -21,12 +21,19 @@ const PULL: Cohesion = Cohesion {
     cohesion_force: 1e-3,
     cohesion_range: 0.02,
     surface_energy: 0.0,
+    pull_off: PullOff::Displacement,
 };
 
 const JKR: Cohesion = Cohesion {
     cohesion_force: 0.0,
     cohesion_range: 0.0,
     surface_energy: 3e-4,
+    pull_off: PullOff::Displacement,
+};
+
+const JKR_FORCE: Cohesion = Cohesion {
+    pull_off: PullOff::Force,
+    ..JKR
 };
 
 /// Every kind of cohesion, with friction and rolling resistance or without.
@@ -37,6 +44,7 @@ fn models() -> Vec<ContactModel> {
         (LINEAR, Some(PULL)),
         (HERTZ, Some(PULL)),
         (HERTZ, Some(JKR)),
+        (HERTZ, Some(JKR_FORCE)),
     ] {
         for rolling in [None, Some(ROLLING)] {
             let model = ContactModel {
@@ -90,6 +98,37 @@ fn the_ledger_closes_in_a_prescribed_and_in_an_elastic_tube() {
     }
 }
 
+/// What contacts lose where a wall that jumps outwards breaks them, the jump has done work for. The forces of the step
+/// change by the jump, which leaves an error of order 1 in the step open.
+#[test]
+fn the_ledger_closes_over_a_jump_that_breaks_contacts() {
+    let time_step = 5e-4;
+    let jump = 10.0 + 0.5 * time_step;
+    let frictional = ContactModel::new(HERTZ, Some(ONE_FRICTION));
+    for model in models().into_iter().chain([frictional]) {
+        let amplitude = Schedule::through(vec![(0.0, 0.3), (jump, 0.3), (jump, 0.26)]).unwrap();
+        let frequency = Schedule::constant(0.1);
+        let wall = waving(coarse(2), 1.5, Waveform::Sine, -1.0, amplitude, frequency);
+        let bodies = packed(60, 0.8, &wall, model.normal, 3);
+        let mut simulation =
+            Simulation::new(bodies, wall, with(model, time_step, Kernel::default()));
+        let mut told = |steps| {
+            simulation.advance(steps).unwrap();
+            let ledger = simulation.ledger();
+            let residual = ledger.residual(simulation.energy());
+            (residual, ledger.cohesion_dissipated, ledger.wall_work)
+        };
+        let (before, after) = (told(20_000), told(1));
+        let residual = (after.0 - before.0).abs();
+        assert!((after.2 - before.2).abs() > 1e-3, "no jump: {after:?}");
+        assert!(residual < 1e-5, "{model:?}: {residual}");
+        if model.cohesion.is_some_and(|it| it.is_jkr()) {
+            let broken = after.1 - before.1;
+            assert!(broken > 3.0 * residual, "{model:?}: {residual} {broken}");
+        }
+    }
+}
+
 /// In the middle of rolling and of clinging contacts, to the last bit; the fast kernels leave them to the reference.
 #[test]
 fn a_restart_goes_on_with_the_same_bits_whichever_kernel_is_asked_for() {
@@ -105,7 +144,7 @@ fn a_restart_goes_on_with_the_same_bits_whichever_kernel_is_asked_for() {
             }
             let snapshot = whole.snapshot();
             assert_eq!(snapshot, other.snapshot(), "{model:?}");
-            let remembers = model.rolling.is_some() || model.cohesion == Some(JKR);
+            let remembers = model.rolling.is_some() || model.cohesion.is_some_and(|it| it.is_jkr());
             let histories = &snapshot.general_histories;
             assert!(!remembers || histories.iter().any(|it| !it.is_empty()));
             let mut resumed =

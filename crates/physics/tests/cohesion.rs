@@ -2,12 +2,12 @@
 
 mod common;
 
-use common::{Collision, JKR, LINEAR, PULL, hertz, smooth};
+use common::{Collision, JKR, JKR_FORCE, LINEAR, PULL, hertz, smooth};
 use core::f64::consts::PI;
 use glam::DVec3;
 use peristalsis_physics::contact::{
     Cohesion, Contact, ContactForce, ContactLaw, ContactModel, DissipationForm, General,
-    GeneralHistory, Normal, TangentialLaw, reduced_radius,
+    GeneralHistory, Normal, PullOff, TangentialLaw, reduced_radius,
 };
 
 const HERTZ: Normal = Normal::Hertz(hertz(DissipationForm::Viscoelastic));
@@ -71,7 +71,12 @@ fn a_jkr_contact_has_the_force_of_its_radius() {
 
 #[test]
 fn the_elastic_force_is_the_slope_of_the_energy_also_across_a_gap() {
-    for (normal, cohesion) in [(HERTZ, JKR), (HERTZ, PULL), (Normal::Linear(LINEAR), PULL)] {
+    for (normal, cohesion) in [
+        (HERTZ, JKR),
+        (HERTZ, JKR_FORCE),
+        (HERTZ, PULL),
+        (Normal::Linear(LINEAR), PULL),
+    ] {
         let law = law(normal, cohesion);
         let range = law.range(1.0);
         for part in [-0.55, -0.3, -0.01, 0.1, 1.0, 5.0] {
@@ -88,17 +93,60 @@ fn the_elastic_force_is_the_slope_of_the_energy_also_across_a_gap() {
     }
 }
 
-/// 7.09 (w^5 R^4/E*^2)^(1/3), Thornton & Ning.
-#[test]
-fn the_energy_of_making_and_breaking() {
-    let law = law(HERTZ, JKR);
-    let (_, history) = at(&law, 0.01);
+/// Where a neck breaks: the radius, its overlap and force, and the work that led there from touch, along the branch of
+/// Johnson, Kendall and Roberts.
+fn breaking(pull_off: PullOff, work_of_adhesion: f64) -> (f64, f64, f64) {
     let reduced = reduced_radius(1.0, 0.6);
-    let work: f64 = 2.0 * JKR.surface_energy;
-    let modulus: f64 = 1.0 / 1.5;
-    let expected = 7.09 * (work.powi(5) * reduced.powi(4) / (modulus * modulus)).cbrt();
-    let found = law.tangential.bond(&history);
-    assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    let modulus = 1.0 / 1.5;
+    // d xi/da = 0 (there the gap is largest), and df/da = 0.
+    let least = (PI * work_of_adhesion * reduced * reduced / (8.0 * modulus)).cbrt();
+    let radius = match pull_off {
+        PullOff::Displacement => least,
+        PullOff::Force => least * 9.0_f64.cbrt(),
+    };
+    // xi = 0
+    let touch = least * 16.0_f64.cbrt();
+    let steps = 4000;
+    let at = |step: i32| {
+        jkr(
+            touch + (radius - touch) * f64::from(step) / f64::from(steps),
+            work_of_adhesion,
+        )
+    };
+    let work: f64 = (0..steps)
+        .map(|step| (at(step), at(step + 1)))
+        .map(|(one, other)| 0.5 * (one.1 + other.1) * (other.0 - one.0))
+        .sum();
+    let (overlap, force) = at(steps);
+    (overlap, force, work)
+}
+
+/// The gap, the force and the energy of breaking, of both ways to pull.
+#[test]
+fn a_neck_breaks_where_its_gap_or_its_pull_is_largest() {
+    let reduced = reduced_radius(1.0, 0.6);
+    let work = 2.0 * JKR.surface_energy;
+    let most = 3.0 * PI * JKR.surface_energy * reduced;
+    for (cohesion, part, coefficient) in [(JKR, 5.0 / 9.0, 7.09), (JKR_FORCE, 1.0, 3.50)] {
+        let law = law(HERTZ, cohesion);
+        let (overlap, force, energy) = breaking(cohesion.pull_off, work);
+        assert!((force / most + part).abs() < 1e-12, "{force} {most}");
+        let (_, mut history) = at(&law, 0.01);
+        let contact =
+            |overlap: f64| Contact::new((1.0, 0.6), (0.8 - overlap) * DVec3::X, DVec3::ZERO);
+        assert!(law.acts(&contact(0.999_999 * overlap), &history));
+        assert!(!law.acts(&contact(1.000_001 * overlap), &history));
+        let last = law.force(&contact(0.999_999 * overlap), &mut history, 0.0);
+        // The slope of the force is infinite where the gap is largest.
+        assert!(
+            (last.force.x / force - 1.0).abs() < 5e-3,
+            "{last:?} {force}"
+        );
+        let bond = law.tangential.bond(&history);
+        assert!((bond / energy - 1.0).abs() < 1e-6, "{bond} {energy}");
+        let closed = coefficient * (work.powi(5) * reduced.powi(4) * 1.5 * 1.5).cbrt();
+        assert!((bond / closed - 1.0).abs() < 1e-3, "{bond} {closed}");
+    }
 }
 
 /// A contact is made by touching alone, and then lasts across a gap.
@@ -140,14 +188,14 @@ fn slow_spheres_stick_and_fast_ones_part() {
     };
     let (parted, lost) = restitution(PULL, 0.02);
     assert!(parted && lost.abs() < 1e-8, "{lost}");
-    let law = law(HERTZ, JKR);
-    let mut history = GeneralHistory::default();
-    let touching = Contact::new((1.0, 1.0), DVec3::X * (1.0 - 1e-9), DVec3::ZERO);
-    law.force(&touching, &mut history, 0.0);
-    let bond = law.tangential.bond(&history);
-    // m_ij v^2/2 with m_ij = 1/2.
-    let sticking = (4.0 * bond).sqrt();
-    assert!(!restitution(JKR, 0.97 * sticking).0);
-    let (parted, lost) = restitution(JKR, 1.1 * sticking);
-    assert!(parted && (lost / bond - 1.0).abs() < 0.02, "{lost} {bond}");
+    for jkr in [JKR, JKR_FORCE] {
+        let (_, _, bond) = breaking(jkr.pull_off, 2.0 * jkr.surface_energy);
+        // Of spheres of diameter 1; the bond goes with R^(4/3).
+        let bond = bond * (0.25 / reduced_radius(1.0, 0.6)).powf(4.0 / 3.0);
+        // m_ij v^2/2 with m_ij = 1/2.
+        let sticking = (4.0 * bond).sqrt();
+        assert!(!restitution(jkr, 0.97 * sticking).0);
+        let (parted, lost) = restitution(jkr, 1.1 * sticking);
+        assert!(parted && (lost / bond - 1.0).abs() < 0.02, "{lost} {bond}");
+    }
 }

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from laws import Linear
 from observables import Observed, contact_number, flow_rate_ratio, granular_temperature, inside, rotational_energy
-from tubes import COARSE, Array, Course, Tube
+from tubes import COARSE, COLUMNS, Array, Course, Tube
 
 TUBE = Tube(replace(COARSE, waves=2), 2.75, 0.05, Linear(0.0))
 
@@ -67,3 +67,13 @@ def test_the_wall_stands_on_its_wave_and_moves_with_it() -> None:
     later, _ = TUBE.wall(0.3 + 1e-6)
     assert (later - places) / 1e-6 == pytest.approx(velocities, abs=1e-7)
     assert distance.min() == pytest.approx(TUBE.width / 2, abs=1e-2)
+
+
+def test_a_grain_that_left_the_box_is_forgotten_from_then_on() -> None:
+    frames = np.zeros((3, 2, COLUMNS))
+    tube = Tube(COARSE, 2.75, 0.02)
+    frames[1, 1, 0] = 1.01 * tube.half_box
+    kept = Course(tube, 1.0, frames).in_box()
+    assert not np.isnan(kept.frames[:, 0]).any() and not np.isnan(kept.frames[0]).any()
+    assert np.isnan(kept.frames[1:, 1]).all()
+    assert not np.isnan(frames).any()

@@ -1,6 +1,6 @@
 //! The contact of two spheres: friction, rolling resistance and cohesion.
 
-use peristalsis_physics::contact::{Cohesion, ContactModel, Normal};
+use peristalsis_physics::contact::{Cohesion, ContactModel, Normal, PullOff};
 
 use super::Context;
 use crate::error::ProblemKind;
@@ -68,6 +68,7 @@ pub(super) fn with_cohesion_in_si(
         cohesion_force,
         cohesion_range,
         surface_energy,
+        pull_off,
     } = cohesion;
     let keys = [
         SURFACE_ENERGY,
@@ -92,6 +93,13 @@ pub(super) fn with_cohesion_in_si(
         let message =
             format!("contact.cohesion_range is the reach of {COHESION_FORCE}, which is 0");
         let help = format!("give {COHESION_FORCE}, or leave contact.cohesion_range out");
+        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
+    }
+    if pull_off != PullOff::default() && surface_energy == 0.0 {
+        let keys = ["contact.pull_off"];
+        let message =
+            format!("contact.pull_off says where a JKR contact breaks, and {SURFACE_ENERGY} is 0");
+        let help = format!("give {SURFACE_ENERGY}, or leave contact.pull_off out");
         return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
     }
     Some(ContactModel {

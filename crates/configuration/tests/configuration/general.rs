@@ -24,6 +24,7 @@ fn what_is_not_given_changes_nothing() {
         "contact.rolling_friction=0",
         "contact.cohesion_force=0",
         "contact.surface_energy=0",
+        "contact.pull_off=\"displacement\"",
     ];
     assert_eq!(frictional(&none).run_hash(), plain.run_hash());
     assert_eq!(plain.run.kernel, Kernel::Fast);
@@ -41,6 +42,7 @@ fn what_is_given_reads_back_and_takes_the_reference_kernel() {
         &ROUGH[..],
         &["contact.cohesion_force=0.01", "contact.cohesion_range=0.02"],
         &["contact.surface_energy=0.001"],
+        &["contact.surface_energy=0.001", "contact.pull_off=\"force\""],
     ] {
         let found = frictional(settings);
         assert!(found.contact.is_general() && found.reference_only().is_some());
@@ -89,6 +91,11 @@ fn what_no_law_has_is_refused_at_its_key() {
             "frictional",
             &["contact.cohesion_range=0.1"],
             "contact.cohesion_range",
+        ),
+        (
+            "frictional",
+            &["contact.cohesion_force=0.1", "contact.pull_off=\"force\""],
+            "contact.pull_off",
         ),
         (
             "frictional",

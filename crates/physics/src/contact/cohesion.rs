@@ -17,8 +17,7 @@ use crate::real::Real;
 /// JKR (surface energy gamma > 0, with the Hertz law): xi = a^2/R_ij - (2 pi w a/E*)^(1/2),
 /// f_n = 4 E* a^3/(3 R_ij) - (8 pi w E* a^3)^(1/2), a radius of contact \[d\], E* = Y/(2 (1 - nu^2)), w = 2 gamma the work of
 /// adhesion. A contact is made where the spheres touch, xi = 0, with f_n = -8/9 of the pull-off force 3 pi gamma R_ij, and
-/// breaks at xi = -(3/4) (pi^2 w^2 R_ij/E*^2)^(1/3), so that making and breaking loses
-/// 7.09 (w^5 R_ij^4/E*^2)^(1/3). Johnson, Kendall & Roberts, Proc. R. Soc. A 324, 301 (1971); Thornton & Ning, Powder
+/// breaks where [`PullOff`] says. Johnson, Kendall & Roberts, Proc. R. Soc. A 324, 301 (1971); Thornton & Ning, Powder
 /// Technol. 99, 154 (1998). The Hertz law damps as if the spheres overlapped by a^2/R_ij.
 ///
 /// Friction and rolling resistance are bounded by the repulsive part of f_n (linear), or by f_n + 6 pi gamma R_ij (JKR).
@@ -37,6 +36,47 @@ pub struct Cohesion {
     /// keep gamma/(Y^(2/3) d) or the pull-off force over the weight, whichever counts, as it is.
     #[schemars(extend("x-unit" = "m t^-2", "minimum" = 0, "maximum" = 1e12))]
     pub surface_energy: f64,
+    /// Where the neck of a JKR contact breaks.
+    #[serde(skip_serializing_if = "PullOff::is_default")]
+    pub pull_off: PullOff,
+}
+
+/// Where the neck of a JKR contact breaks that is drawn apart: how far it is followed.
+///
+/// The pull grows with the gap up to the pull-off force and then falls. Under a fixed load the neck breaks there; between
+/// fixed grips it is drawn out until it has no equilibrium left. Maugis & Barquins, J. Phys. D 11, 1989 (1978).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum PullOff {
+    /// Displacement control, fixed grips: it breaks where its gap can grow no more, xi = -(3/4) (pi^2 w^2 R_ij/E*^2)^(1/3),
+    /// at 5/9 of the pull-off force. Making and breaking loses 7.09 (w^5 R_ij^4/E*^2)^(1/3).
+    #[default]
+    Displacement,
+    /// Force control, fixed load: it breaks at the pull-off force, at 0.48 of that gap. Making and breaking loses
+    /// 3.50 (w^5 R_ij^4/E*^2)^(1/3). LAMMPS has this.
+    Force,
+}
+
+impl PullOff {
+    fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// y where the neck breaks: y^2 = a/a_0, a_0 the radius of contact where displacement control breaks it.
+    fn root(self) -> f64 {
+        match self {
+            Self::Displacement => 1.0,
+            Self::Force => CUBE_ROOT_OF_3,
+        }
+    }
+
+    /// Gap where the neck breaks, 4 y - y^4 \[xi_0\].
+    fn gap(self) -> f64 {
+        match self {
+            Self::Displacement => 3.0,
+            Self::Force => CUBE_ROOT_OF_3,
+        }
+    }
 }
 
 /// A JKR contact in units of its own: lengths of xi_0 = (pi w)^(2/3) R_ij^(1/3)/(4 E*^(2/3)), forces of the pull-off force.
@@ -48,10 +88,10 @@ struct Scale<R> {
     pull_off: R,
 }
 
-/// y^4 at first touch, y^2 = a/a_0 with a_0 the radius of contact where it breaks: y^3 = 4 there.
+/// y^4 at first touch: y^3 = 4 there.
 const TOUCH: f64 = 6.349_604_207_872_798;
-/// Overlap at which a contact breaks \[xi_0\].
-const BREAKS: f64 = 3.0;
+/// y where the pull is largest: f_n = y^6/9 - 2 y^3/3 pull-off forces, which is least at y^3 = 3.
+const CUBE_ROOT_OF_3: f64 = 1.442_249_570_307_408_3;
 
 impl Cohesion {
     /// The attraction of these keys; `None` where both forces are 0.
@@ -67,7 +107,7 @@ impl Cohesion {
     /// Gap up to which a contact lasts that was made \[d\].
     pub fn range<R: Real>(&self, normal: &impl NormalLaw, reduced_radius: R) -> R {
         match self.is_jkr() {
-            true => self.scale(normal, reduced_radius).length * R::splat(BREAKS),
+            true => self.scale(normal, reduced_radius).length * R::splat(self.pull_off.gap()),
             false => R::splat(self.cohesion_range),
         }
     }
@@ -84,7 +124,10 @@ impl Cohesion {
     /// Energy that is lost when a contact that was made breaks, and by which parting costs more than meeting gave.
     pub(super) fn bond<R: Real>(&self, normal: &impl NormalLaw, reduced_radius: R) -> R {
         match self.is_jkr() {
-            true => energy(self.scale(normal, reduced_radius), R::splat(1.0)),
+            true => energy(
+                self.scale(normal, reduced_radius),
+                R::splat(self.pull_off.root()),
+            ),
             false => R::splat(0.0),
         }
     }

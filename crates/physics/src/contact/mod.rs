@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use crate::real::{Real, Vector};
 
-pub use cohesion::Cohesion;
+pub use cohesion::{Cohesion, PullOff};
 pub use general::{General, GeneralHistory};
 pub use hertz::{DissipationForm, ViscoelasticHertz};
 pub use linear::LinearSpringDashpot;

@@ -6,8 +6,8 @@
 use glam::DVec3;
 use peristalsis_physics::contact::{
     Cohesion, Contact, ContactForce, ContactLaw, ContactModel, CundallStrack, DissipationForm,
-    Frictionless, General, GeneralHistory, LinearSpringDashpot, Normal, RollingResistance, Sliding,
-    TangentialLaw, ViscoelasticHertz,
+    Frictionless, General, GeneralHistory, LinearSpringDashpot, Normal, PullOff, RollingResistance,
+    Sliding, TangentialLaw, ViscoelasticHertz,
 };
 
 /// The normal law of the frictionless preset.
@@ -71,12 +71,20 @@ pub(crate) const PULL: Cohesion = Cohesion {
     cohesion_force: 2e-3,
     cohesion_range: 0.02,
     surface_energy: 0.0,
+    pull_off: PullOff::Displacement,
 };
 
 pub(crate) const JKR: Cohesion = Cohesion {
     cohesion_force: 0.0,
     cohesion_range: 0.0,
     surface_energy: 1e-3,
+    pull_off: PullOff::Displacement,
+};
+
+/// The same, which breaks at the pull-off force.
+pub(crate) const JKR_FORCE: Cohesion = Cohesion {
+    pull_off: PullOff::Force,
+    ..JKR
 };
 
 /// Laws with rolling resistance, cohesion, and both.
@@ -87,7 +95,7 @@ fn general() -> Vec<(String, ContactModel)> {
     ];
     let mut rows = Vec::new();
     for normal in normals {
-        for cohesion in [None, Some(PULL), Some(JKR)] {
+        for cohesion in [None, Some(PULL), Some(JKR), Some(JKR_FORCE)] {
             let is_hertz = matches!(normal, Normal::Hertz(_));
             for rolling in [None, Some(ROLLING)] {
                 let model = ContactModel {
@@ -95,7 +103,7 @@ fn general() -> Vec<(String, ContactModel)> {
                     rolling,
                     ..ContactModel::new(normal, rolling.map(|_| friction(Sliding::Spring)))
                 };
-                if model.is_general() && (is_hertz || cohesion != Some(JKR)) {
+                if model.is_general() && (is_hertz || !cohesion.is_some_and(|it| it.is_jkr())) {
                     rows.push((format!("{model:?}"), model));
                 }
             }

@@ -270,7 +270,7 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         Ok(())
     }
 
-    fn contact_energy(&mut self, wall: &Wall) -> f64 {
+    fn tally(&mut self, wall: &Wall) -> Tally {
         let reference = &self.reference;
         let (mut bodies, mut contacts) = (reference.bodies.clone(), reference.contacts.clone());
         // With their velocities: contacts that slide store less.
@@ -278,8 +278,10 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         spheres.store(&mut bodies, &mut Past::default());
         self.scratch
             .store_histories::<T>(&mut contacts, &self.beside_wall);
-        contacts.refresh(&bodies, wall, reference.parameters.skin);
-        evaluate(reference.law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
+        let parameters = reference.parameters;
+        contacts.refresh(&bodies, wall, parameters.skin);
+        let time_step = parameters.time_step;
+        evaluate(reference.law, &mut bodies, wall, &mut contacts, time_step)
     }
 
     fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {

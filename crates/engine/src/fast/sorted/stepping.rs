@@ -109,11 +109,11 @@ impl<N: NormalLaw> Stepper for Stepping<'_, N> {
         Ok(())
     }
 
-    fn contact_energy(&mut self, wall: &Wall) -> f64 {
+    fn tally(&mut self, wall: &Wall) -> Tally {
         self.sorted.wall.follow(wall);
-        let stored = self.sorted.forces::<N, true>(self.law).contact_energy;
+        let tally = self.sorted.forces::<N, true>(self.law);
         self.sorted.forget_forces();
-        stored
+        tally
     }
 
     fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally {

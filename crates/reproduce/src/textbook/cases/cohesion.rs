@@ -2,12 +2,12 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Pattern, Tint};
 use peristalsis_physics::contact::{
-    Cohesion, ContactModel, DissipationForm, Normal, NormalLaw, ViscoelasticHertz,
+    Cohesion, ContactModel, DissipationForm, Normal, NormalLaw, PullOff, ViscoelasticHertz,
 };
 
-use super::plot::points;
+use super::plot::{curve, open_if, points};
 use crate::columns::Columns;
 use crate::error::Result;
 use crate::textbook::case::Circumstances;
@@ -27,12 +27,20 @@ const JKR: Cohesion = Cohesion {
     cohesion_force: 0.0,
     cohesion_range: 0.0,
     surface_energy: 1e-4,
+    pull_off: PullOff::Displacement,
+};
+const JKR_FORCE: Cohesion = Cohesion {
+    pull_off: PullOff::Force,
+    ..JKR
 };
 const LINEAR: Cohesion = Cohesion {
     cohesion_force: 5e-4,
     cohesion_range: 0.01,
     surface_energy: 0.0,
+    pull_off: PullOff::Displacement,
 };
+/// Both ways in which a neck breaks, by name.
+const NECKS: [(&str, Cohesion); 2] = [("JKR", JKR), ("JKR, force control", JKR_FORCE)];
 const TIME_STEP: f64 = 0.02;
 /// Speeds over the sticking speed.
 const SPEEDS: [f64; 7] = [0.9, 0.98, 1.05, 1.2, 1.6, 2.5, 5.0];
@@ -44,11 +52,33 @@ fn contact(normal: ViscoelasticHertz, cohesion: Cohesion) -> ContactModel {
     }
 }
 
-/// W of two spheres of diameter 1, 7.09 (w^5 R^4/E*^2)^(1/3).
-fn energy_of_a_cycle() -> f64 {
+/// W of two spheres of diameter 1: 7.09 (w^5 R^4/E*^2)^(1/3) under displacement control; under force control the integral of
+/// -f dxi over the radius a of contact, from touch, xi = 0, to the largest pull, df/da = 0.
+fn energy_of_a_cycle(pull_off: PullOff) -> f64 {
     let (work, reduced_radius): (f64, f64) = (2.0 * JKR.surface_energy, 0.25);
     let modulus = HERTZ.young_modulus / (2.0 * (1.0 - HERTZ.poisson_ratio * HERTZ.poisson_ratio));
-    7.09 * (work.powi(5) * reduced_radius.powi(4) / (modulus * modulus)).cbrt()
+    if pull_off == PullOff::Displacement {
+        return 7.09 * (work.powi(5) * reduced_radius.powi(4) / (modulus * modulus)).cbrt();
+    }
+    let cubed = PI * work * reduced_radius * reduced_radius / modulus;
+    let [touch, largest_pull] = [2.0, 9.0 / 8.0].map(|times: f64| (times * cubed).cbrt());
+    let pull = |radius: f64| {
+        (8.0 * PI * work * modulus).sqrt() * radius.powf(1.5)
+            - 4.0 * modulus * radius.powi(3) / (3.0 * reduced_radius)
+    };
+    let slope =
+        |radius: f64| 2.0 * radius / reduced_radius - (PI * work / (2.0 * modulus * radius)).sqrt();
+    let steps = 1000;
+    let width = (touch - largest_pull) / f64::from(steps);
+    let middles = (0..steps).map(|step| largest_pull + (f64::from(step) + 0.5) * width);
+    middles
+        .map(|radius| pull(radius) * slope(radius) * width)
+        .sum()
+}
+
+/// The speed below which two spheres stick: m_ij v^2/2 = W with m_ij = 1/2.
+fn sticking_speed(pull_off: PullOff) -> f64 {
+    (4.0 * energy_of_a_cycle(pull_off)).sqrt()
 }
 
 /// e at a speed over the sticking speed.
@@ -59,12 +89,16 @@ fn closed_form(speed: f64) -> f64 {
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut finding = PROSE.described(&[]);
     let mut rows = Vec::new();
-    // m_ij v^2/2 = W with m_ij = 1/2.
-    let sticking = (4.0 * energy_of_a_cycle()).sqrt();
     for means in Means::INTEGRATORS {
         let name = means.name();
         for (kind, cohesion, expected, reference) in [
             ("JKR", JKR, 1.5 * PI * JKR.surface_energy, "3 pi gamma R"),
+            (
+                NECKS[1].0,
+                JKR_FORCE,
+                1.5 * PI * JKR.surface_energy,
+                "3 pi gamma R",
+            ),
             ("linear", LINEAR, 2.0 * LINEAR.cohesion_force, "4 R f_c"),
         ] {
             circumstances.go_on()?;
@@ -73,45 +107,66 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
             let check = Check::relative("pull-off force", &setting, expected, found, 0.01);
             finding.checks.push(check.by(reference));
         }
-        for speed in SPEEDS {
-            circumstances.go_on()?;
-            let undamped = contact(HERTZ.undamped(), JKR);
-            let found = restitution(undamped, means, TIME_STEP, speed * sticking)?;
-            let setting = format!("JKR, {speed} of the sticking speed, {name}");
-            let expected = closed_form(speed);
-            let check = Check::absolute("restitution", &setting, expected, found, 0.02);
-            finding.checks.push(check.by("Thornton & Ning 1998"));
-            if means == Means::USUAL {
-                rows.push((speed, found));
+        for (kind, cohesion) in NECKS {
+            for speed in SPEEDS {
+                circumstances.go_on()?;
+                let undamped = contact(HERTZ.undamped(), cohesion);
+                let absolute = speed * sticking_speed(cohesion.pull_off);
+                let found = restitution(undamped, means, TIME_STEP, absolute)?;
+                let setting = format!("{kind}, {speed} of the sticking speed, {name}");
+                let expected = closed_form(speed);
+                let check = Check::absolute("restitution", &setting, expected, found, 0.02);
+                finding.checks.push(check.by("Thornton & Ning 1998"));
+                if means == Means::USUAL {
+                    let speed = absolute / sticking_speed(PullOff::Displacement);
+                    rows.push((cohesion.pull_off, speed, found));
+                }
             }
         }
         let undamped = contact(HERTZ.undamped(), LINEAR);
-        let found = restitution(undamped, means, TIME_STEP, sticking)?;
+        let found = restitution(undamped, means, TIME_STEP, sticking_speed(JKR.pull_off))?;
         let setting = format!("linear, two spheres, {name}");
         let check = Check::relative("restitution", &setting, 1.0, found, 5e-3);
         finding.checks.push(check.by("no loss"));
     }
     finding.data = Some(
         Columns::of(&rows)
-            .number("speed", "1", "over the sticking speed", |row| row.0)
-            .number("restitution", "1", "0 where they stick", |row| row.1)
+            .word("pull_off", "where the neck breaks", |row| match row.0 {
+                PullOff::Displacement => "displacement".into(),
+                PullOff::Force => "force".into(),
+            })
+            .number(
+                "speed",
+                "1",
+                "over the sticking speed under displacement control",
+                |row| row.1,
+            )
+            .number("restitution", "1", "0 where they stick", |row| row.2)
             .table()?,
     );
     finding.figures = vec![PROSE.chart("sticking", &[], drawing(&rows))?];
     Ok(finding)
 }
 
-fn drawing(rows: &[(f64, f64)]) -> ChartFigure {
+fn drawing(rows: &[(PullOff, f64, f64)]) -> ChartFigure {
     let speeds: Vec<f64> = (0..=550_u32).map(|step| 0.01 * f64::from(step)).collect();
-    let values: Vec<f64> = speeds.iter().map(|speed| closed_form(*speed)).collect();
-    let line = Line::new("closed form", &speeds, &values)
-        .tint(Tint::Black)
-        .pattern(Pattern::Dashed);
-    let panel = ChartPanel::new("speed over the sticking speed", "restitution *e*")
-        .x_range(0.0..=5.5)
-        .y_range(-0.05..=1.05)
-        .with(line)
-        .with(Reference::vertical(1.0))
-        .with(points("two spheres", rows, |row| *row).series(0));
+    let mut panel = ChartPanel::new(
+        "speed over the sticking speed under displacement control",
+        "restitution *e*",
+    )
+    .x_range(0.0..=5.5)
+    .y_range(-0.05..=1.05);
+    let names = ["displacement control", "force control"];
+    for (series, (name, (_, cohesion))) in names.into_iter().zip(NECKS).enumerate() {
+        let pull_off = cohesion.pull_off;
+        let part = sticking_speed(pull_off) / sticking_speed(PullOff::Displacement);
+        let form = if series == 0 { "closed form" } else { "" };
+        let line = curve(form, &speeds, |speed| closed_form(speed / part));
+        let mine = rows.iter().filter(|row| row.0 == pull_off);
+        let found = points(name, mine, |row| (row.1, row.2)).series(series);
+        panel = panel
+            .with(line.tint(Tint::Black).pattern(Pattern::Dashed))
+            .with(open_if(series > 0, found));
+    }
     ChartFigure::new(panel)
 }

@@ -35,10 +35,21 @@ const DURATION: f64 = 400.0;
 /// tan(theta) of the inclines: at all of them the sphere rolls without slip, if it does.
 const SLOPES: [f64; 9] = [0.03, 0.06, 0.09, 0.098, 0.102, 0.12, 0.2, 0.4, 0.8];
 
-/// a/g of a solid sphere on an incline of this slope.
-fn acceleration(slope: f64) -> f64 {
+/// Largest error of a/g on an incline, none of it of the time step: the integrators differ by 1e-9.
+///
+/// The springs of the contact swing out: u'' = -K u - C u' of centre and spin, with the masses 1 and 2/5,
+/// K = \[\[1, -1\], \[-1, 2\]\] and C = K/10, decays slowest at the rate 0.0225 with the frequency 0.67. From slopes up to 0.1
+/// on, 0.1 g/0.67 exp(-0.0225 * 200) of the velocity are left after half of the time, 8e-6 of g times the other half. The
+/// plane is bent: after 3 d it is steeper by 6e-6.
+const INCLINE: f64 = 1.5e-5;
+
+/// a/g of a solid sphere on an incline of this slope that it overlaps: friction acts at the arm l = (1 - xi)/2, the rolling
+/// couple is mu_r f_n/2.
+fn acceleration(slope: f64, overlap: f64) -> f64 {
     let cosine = 1.0 / (1.0 + slope * slope).sqrt();
-    5.0 / 7.0 * cosine * (slope - ROLLING.rolling_friction).max(0.0)
+    let arm = 0.5 * (1.0 - overlap);
+    let held = ROLLING.rolling_friction * 0.5 / arm;
+    cosine * (slope - held).max(0.0) / (1.0 + 0.1 / (arm * arm))
 }
 
 /// a/g in the second half of a throw.
@@ -60,15 +71,11 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
                 speed: 0.0,
                 ..THROW
             };
-            let (expected, found) = (acceleration(slope), late_acceleration(&throw, means)?);
+            let expected = acceleration(slope, throw.overlap());
+            let found = late_acceleration(&throw, means)?;
             let setting = format!("tan(theta) = {slope}, {name}");
-            let check = Check::absolute(
-                "a/g from rest on an incline",
-                &setting,
-                expected,
-                found,
-                1e-3,
-            );
+            let quantity = "a/g from rest on an incline";
+            let check = Check::absolute(quantity, &setting, expected, found, INCLINE);
             finding.checks.push(check.by("held, or rolling"));
             if means == Means::USUAL {
                 rows.push((slope, found));
@@ -92,7 +99,10 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
 
 fn drawing(rows: &[(f64, f64)]) -> ChartFigure {
     let slopes: Vec<f64> = (0..=90_u32).map(|step| 0.01 * f64::from(step)).collect();
-    let values: Vec<f64> = slopes.iter().map(|slope| acceleration(*slope)).collect();
+    let values: Vec<f64> = slopes
+        .iter()
+        .map(|slope| acceleration(*slope, 0.0))
+        .collect();
     let closed_form = Line::new("closed form", &slopes, &values)
         .tint(Tint::Black)
         .pattern(Pattern::Dashed);
