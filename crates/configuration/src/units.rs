@@ -69,6 +69,11 @@ impl Units {
         self.mass() / (self.length() * self.time() * self.time())
     }
 
+    /// m d^2/t^2 \[J\], or \[N m\] of a torque.
+    pub fn energy(&self) -> f64 {
+        self.force() * self.length()
+    }
+
     /// m d^2/t^3 \[W\].
     pub fn power(&self) -> f64 {
         self.mass() * self.velocity() * self.velocity() / self.time()

@@ -369,9 +369,11 @@ impl Simulation {
     ///
     /// The forces differ from the forces of the last step only by the velocities, which the integrator has corrected since.
     pub fn for_each_wall_contact(&self, visit: impl FnMut(WallContact)) {
-        let normal = self.parameters().contact.normal;
-        with_contact_law!(normal, &self.memory, |law, contacts| {
-            for_each_contact(law, self.bodies(), self.wall(), contacts, visit);
+        let Parameters {
+            contact, time_step, ..
+        } = self.parameters;
+        with_contact_law!(contact.normal, &self.memory, |law, contacts| {
+            for_each_contact(law, &self.bodies, self.wall(), contacts, time_step, visit);
         });
     }
 

@@ -23,6 +23,9 @@ pub struct WallContact {
     pub normal_force: DVec3,
     /// f_t, friction.
     pub tangential_force: DVec3,
+    /// Power that sliding takes, the loss of the step to come as far as the velocities now tell: f_t times the speed at which
+    /// the slider moves, without what the tangential spring takes up and gives back \[m d^2/t^3\].
+    pub sliding_power: f64,
 }
 
 /// Contacts with an immobile wall that are found before any of them is worked out: many at a time, so that the branches
@@ -35,10 +38,25 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     bodies: &Bodies,
     wall: &Wall,
     contacts: &Contacts<T::History<f64>>,
+    time_step: f64,
     mut visit: impl FnMut(WallContact),
 ) {
+    let mut answer = |grain: usize, acceleration: DVec3, contact: &Contact, history| {
+        let next = following(contact, acceleration, time_step);
+        visit(WallContact {
+            sliding_power: sliding_power(law, &next, history, time_step),
+            ..answered(law, bodies, grain, contact, history)
+        });
+    };
     let history = |grain, sphere| contacts.wall.history(grain, sphere);
-    touch_immobile(law, bodies, wall, 0..bodies.grains, history, &mut visit);
+    touch_immobile(
+        law,
+        bodies,
+        wall,
+        0..bodies.grains,
+        history,
+        |grain, contact, history| answer(grain, bodies.acceleration[grain], contact, history),
+    );
     if wall.mobile_spheres() == 0 {
         return;
     }
@@ -48,7 +66,8 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
             let separation = periodic(bodies.position[i] - bodies.position[j], wall.length());
             let contact = bodies.sphere(i).contact(&bodies.sphere(j), separation);
             if law.acts(&contact, history) {
-                visit(answered(law, bodies, i, &contact, *history));
+                let acceleration = bodies.acceleration[i] - bodies.acceleration[j];
+                answer(i, acceleration, &contact, *history);
             }
         }
     }
@@ -72,8 +91,16 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     let of_piece = |piece: usize| {
         let grains = piece * PIECE..((piece + 1) * PIECE).min(bodies.grains);
         let mut sums = begin(piece);
-        let visit = |contact| add(&mut sums, contact);
-        touch_immobile(&law, bodies, wall, grains, |_, _| (), visit);
+        touch_immobile(
+            &law,
+            bodies,
+            wall,
+            grains,
+            |_, _| (),
+            |grain, contact, ()| {
+                add(&mut sums, answered(&law, bodies, grain, contact, ()));
+            },
+        );
         sums
     };
     let pieces = 0..bodies.grains.div_ceil(PIECE).max(1);
@@ -94,7 +121,7 @@ fn touch_immobile<N: NormalLaw, T: TangentialLaw>(
     wall: &Wall,
     grains: Range<usize>,
     history: impl Fn(usize, u32) -> T::History<f64>,
-    mut visit: impl FnMut(WallContact),
+    mut visit: impl FnMut(usize, &Contact, T::History<f64>),
 ) {
     let mut found = Vec::new();
     let last = grains.end.saturating_sub(1);
@@ -108,7 +135,7 @@ fn touch_immobile<N: NormalLaw, T: TangentialLaw>(
         });
         if found.len() >= AT_A_TIME || grain == last {
             for (grain, contact, history) in found.drain(..) {
-                visit(answered(law, bodies, grain, &contact, history));
+                visit(grain, &contact, history);
             }
         }
     }
@@ -131,5 +158,35 @@ fn answered<N: NormalLaw, T: TangentialLaw>(
         point: bodies.position[grain] - arm * contact.normal,
         normal_force: answer.force - tangential_force,
         tangential_force,
+        sliding_power: 0.0,
     }
+}
+
+/// A contact a step later, as its relative velocity and acceleration tell; a wall that is prescribed moves on evenly.
+fn following(contact: &Contact, acceleration: DVec3, time_step: f64) -> Contact {
+    let relative_velocity = contact.relative_velocity + time_step * acceleration;
+    let parted = time_step * contact.normal_velocity();
+    Contact {
+        overlap: contact.overlap - parted,
+        distance: contact.distance + parted,
+        relative_velocity,
+        ..*contact
+    }
+}
+
+/// What sliding takes in the step that leads to `next`, over its length; 0 without friction.
+///
+/// The bound on the spring changes with the normal force meanwhile: -f_t . v_t alone would count what the spring takes up,
+/// and gives back later.
+fn sliding_power<N: NormalLaw, T: TangentialLaw>(
+    law: &ContactLaw<N, T>,
+    next: &Contact,
+    mut history: T::History<f64>,
+    time_step: f64,
+) -> f64 {
+    // The spring of a contact that ends is forgotten, which is no sliding.
+    if !law.acts(next, &history) {
+        return 0.0;
+    }
+    law.force(next, &mut history, time_step).tangential.slid / time_step
 }

@@ -121,3 +121,47 @@ fn contacts_lie_on_the_wall() {
     });
     assert!(contacts > 0);
 }
+
+/// A grain that gravity presses on the wall, and pushes along it, touches nothing else: the powers of its contacts add up
+/// to the ledger's loss by sliding within a percent or two, what is told a step ahead of a grain that bounces. Without friction there is none.
+#[test]
+fn what_sliding_on_the_wall_takes_is_in_the_ledger() {
+    for wall in walls() {
+        for (name, normal, friction, integrator) in methods() {
+            let start = DVec3::new(0.0, -0.4, 5.0);
+            let bodies = with_wall_spheres(grains(&[(start, DVec3::ZERO)]), &wall);
+            let missing = |kernel, time_step| {
+                let parameters = Parameters {
+                    kernel,
+                    body_force: DVec3::new(0.0, -0.01, 0.02),
+                    ..parameters(normal, friction, integrator, time_step)
+                };
+                let simulation = Simulation::new(bodies.clone(), wall.clone(), parameters);
+                missing_of_sliding(simulation)
+            };
+            for kernel in KERNELS {
+                let found = missing(kernel, 0.02);
+                assert!(found < 0.02, "{name}, {kernel:?}: {found}");
+            }
+            let found = missing(KERNELS[0], 0.005);
+            assert!(found < 0.015, "{name}: {found}");
+        }
+    }
+}
+
+/// |powers times step - ledger| over the ledger's loss by sliding.
+fn missing_of_sliding(mut simulation: Simulation) -> f64 {
+    let time_step = simulation.parameters().time_step;
+    let mut work = 0.0;
+    for _ in 0..(60.0 / time_step) as u64 {
+        simulation.for_each_wall_contact(|contact| work += time_step * contact.sliding_power);
+        simulation.advance(1).expect("does not diverge");
+    }
+    let lost = simulation.ledger().sliding_dissipated;
+    if simulation.parameters().contact.friction.is_none() {
+        assert_eq!((work, lost), (0.0, 0.0));
+        return 0.0;
+    }
+    assert!(lost > 0.01, "{lost}");
+    (work - lost).abs() / lost
+}

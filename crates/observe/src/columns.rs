@@ -32,6 +32,12 @@ pub enum Scope {
     Cohesion,
     /// Those of an open tube.
     OpenTube,
+    /// Those of a periodic tube.
+    PeriodicTube,
+    /// Those with grains of several sizes.
+    Sizes,
+    /// Those with grains of several sizes, and gravity across the axis.
+    SizesUnderGravity,
 }
 
 const fn row(
@@ -47,7 +53,10 @@ const fn row(
     }
 }
 
-use Scope::{Always, BodyForce, Cohesion, ElasticWall, Friction, OpenTube, Rolling};
+use Scope::{
+    Always, BodyForce, Cohesion, ElasticWall, Friction, OpenTube, PeriodicTube, Rolling, Sizes,
+    SizesUnderGravity,
+};
 
 /// The columns of the time series, in order.
 #[rustfmt::skip]
@@ -103,6 +112,11 @@ pub const COLUMNS: &[Column] = &[
     row("discharged", "m", OpenTube, "mass that has left through the outlet since the start", |s| s.discharged),
     row("hold_up", "m", OpenTube, "mass of the grains between the ends", |s| s.hold_up),
     row("exchanged_energy", "m d^2/t^2", OpenTube, "ledger: energy that grains brought in, less what others took out", |s| s.ledger.exchanged),
+    row("axial_mixing", "1", PeriodicTube, "Lacey's index at the end of the last whole period, of the halves that began in front and behind: 0 apart, 1 at random", |s| s.mixing.map_or(f64::NAN, |it| it.axial)),
+    row("radial_mixing", "1", PeriodicTube, "the same of the halves that began near the axis and near the wall", |s| s.mixing.map_or(f64::NAN, |it| it.radial)),
+    row("radial_segregation", "1", Sizes, "correlation of diameter and radial place r/(R - (d_w + d)/2) at the end of the last whole period: positive where large grains are outside", |s| s.segregation.radial.unwrap_or(f64::NAN)),
+    row("belly_segregation", "1", Sizes, "the same of diameter and the tube's radius R: positive where large grains are in the bellies", |s| s.segregation.belly.unwrap_or(f64::NAN)),
+    row("height_segregation", "1", SizesUnderGravity, "the same of diameter and height over the axis: positive where large grains are on top", |s| s.segregation.height.unwrap_or(f64::NAN)),
 ];
 
 /// The columns of the profile in the wave frame, in order.
@@ -119,6 +133,8 @@ pub const PROFILE: &[Quantity<ProfileBin>] = &[
     Quantity::new("wall_tangential_force", "m/t^2", "axial force of the wall on the grains by friction, per length of tube, along the wave", Measured(|b| b.wall_tangential_force)),
     Quantity::new("wall_pressure", "m/(d t^2)", "pressure on the wall: radial force per area 2 pi R dz, outward", Measured(|b| b.wall_pressure)),
     Quantity::new("wall_shear", "m/(d t^2)", "shear on the wall along the wave: axial force on it per area 2 pi R dz, less that of the pressure", Measured(|b| b.wall_shear)),
+    Quantity::new("wall_wear", "m/t^3", "power that grains lose where they slide on the wall, per area 2 pi R dz", Measured(|b| b.wall_wear)),
+    Quantity::new("mean_diameter", "d", "mean diameter of the grains", Measured(|b| b.diameter)),
     Quantity::new("wall_axial_velocity", "d/t", "mean axial velocity of the wall's spheres along the wave; 0 for a prescribed wall", Measured(|b| b.wall_axial_velocity)),
 ];
 

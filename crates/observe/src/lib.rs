@@ -5,7 +5,8 @@
 //! - [`WaveFrameProfile`] averages density, velocity and temperature in the wave frame, [`WaveByWave`] the flow of each
 //!   wave over each period.
 //! - [`AxialDispersion`] says how grains drift apart, [`TubeShape`] the wall's radius, [`Orientations`] how grains turn,
-//!   [`Load`] what they bear, [`ContactForces`] what may break them.
+//!   [`Load`] what they bear, [`ContactForces`] what may break them, [`Mixing`] and [`Segregation`] how grains of two kinds or
+//!   of several sizes lie.
 
 #![forbid(unsafe_code)]
 
@@ -14,10 +15,12 @@ mod contact_force;
 mod diagnosis;
 mod dispersion;
 mod load;
+mod mixing;
 mod orientation;
 mod profile;
 mod quantity;
 mod sample;
+mod segregation;
 mod series;
 mod shape;
 mod view;
@@ -28,10 +31,12 @@ pub use contact_force::{ContactForce, ContactForces};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
 pub use load::{GrainContact, Load, clear_volume, grain_contacts};
+pub use mixing::Mixing;
 pub use orientation::Orientations;
 pub use profile::{PartOfWave, ProfileBin, WaveFrameProfile, WavePart};
 pub use quantity::{Quantity, Reading, Value};
 pub use sample::{Observer, Sample};
+pub use segregation::Segregation;
 pub use series::{MOST_ROWS, Series};
 pub use shape::TubeShape;
 pub use view::View;

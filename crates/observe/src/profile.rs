@@ -24,6 +24,7 @@ struct Sums {
     mass: f64,
     momentum: DVec3,
     twice_energy: f64,
+    diameter: f64,
     radius: f64,
     least_radius: f64,
     largest_radius: f64,
@@ -40,6 +41,8 @@ struct WallSums {
     tangential: f64,
     /// Radial force of the grains on the wall, outward.
     outward: f64,
+    /// Power that sliding on the wall takes.
+    sliding: f64,
     /// Axial velocity of the spheres of an elastic wall, along the wave.
     axial_velocity: f64,
     /// Such spheres.
@@ -53,6 +56,7 @@ impl WallSums {
         self.normal += other.normal;
         self.tangential += other.tangential;
         self.outward += other.outward;
+        self.sliding += other.sliding;
         self.axial_velocity += other.axial_velocity;
         self.spheres += other.spheres;
         self.looks += other.looks;
@@ -74,6 +78,7 @@ impl Sums {
         self.mass += other.mass;
         self.momentum += other.momentum;
         self.twice_energy += other.twice_energy;
+        self.diameter += other.diameter;
         let range = (other.least_radius, other.largest_radius);
         self.see(other.radius, range, other.looks);
         self.wall.add(&other.wall);
@@ -81,11 +86,12 @@ impl Sums {
 
     /// Adds a grain whose velocity is `velocity`, z along the wave.
     #[inline]
-    fn add_grain(&mut self, mass: f64, velocity: DVec3) {
+    fn add_grain(&mut self, (mass, diameter): (f64, f64), velocity: DVec3) {
         self.number += 1.0;
         self.mass += mass;
         self.momentum += mass * velocity;
         self.twice_energy += mass * velocity.length_squared();
+        self.diameter += diameter;
     }
 
     /// Adds what is seen of the tube at `places` places that are alike.
@@ -167,6 +173,8 @@ pub struct ProfileBin {
     pub axial_velocity: (f64, f64),
     /// Granular temperature about the bin's mean velocity \[m d^2/t^2\], with its error.
     pub temperature: (f64, f64),
+    /// Mean diameter of the grains, with its error \[d\].
+    pub diameter: (f64, f64),
     /// Mean radius of the tube \[d\].
     pub radius: f64,
     /// Least radius seen \[d\].
@@ -182,6 +190,9 @@ pub struct ProfileBin {
     /// Shear on the wall along the wave, with its error \[m/(d t^2)\]: the axial force on the wall per area 2 pi R dz
     /// without that of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.
     pub wall_shear: (f64, f64),
+    /// Power that grains lose where they slide on the wall, sum of -f_t . v_t, per area 2 pi R dz, with its error
+    /// \[m/t^3\].
+    pub wall_wear: (f64, f64),
     /// Mean axial velocity of the spheres of the wall, along the wave, with its error \[d/t\]; 0 for a prescribed wall.
     pub wall_axial_velocity: (f64, f64),
 }
@@ -250,12 +261,13 @@ impl WaveFrameProfile {
         }
         let bodies = view.simulation.bodies();
         let grains = bodies.position.iter().zip(&bodies.velocity);
-        let grains = grains.zip(&bodies.mass).zip(&view.inside);
-        for (((place, &velocity), &mass), &inside) in grains {
+        let sizes = bodies.mass.iter().zip(&bodies.diameter);
+        let grains = grains.zip(sizes).zip(&view.inside);
+        for (((place, &velocity), (&mass, &diameter)), &inside) in grains {
             if inside {
                 let velocity = DVec3::new(velocity.x, velocity.y, heading * velocity.z);
                 let position = heading * place.z / wavelength - cycles;
-                last[bin_of(position, bins)].add_grain(mass, velocity);
+                last[bin_of(position, bins)].add_grain((mass, diameter), velocity);
             }
         }
     }
@@ -289,6 +301,7 @@ impl WaveFrameProfile {
             let sums = &mut sums[bin];
             sums.normal += heading * contact.normal_force.z;
             sums.tangential += heading * contact.tangential_force.z;
+            sums.sliding += contact.sliding_power;
             if from_axis > 0.0 {
                 sums.outward -= (force.x * point.x + force.y * point.y) / from_axis;
             }
@@ -359,6 +372,7 @@ impl WaveFrameProfile {
                     density: with_error(&|sums| sums.number / (sums.looks * bin_width)),
                     axial_velocity: with_error(&Sums::velocity),
                     temperature: with_error(&Sums::temperature),
+                    diameter: with_error(&|sums| sums.diameter / sums.number),
                     radius: total.radius / total.looks,
                     least_radius: total.least_radius,
                     largest_radius: total.largest_radius,
@@ -368,6 +382,7 @@ impl WaveFrameProfile {
                     }),
                     wall_pressure: with_error(&|sums| sums.wall.outward * per_area(&sums.wall)),
                     wall_shear: with_error(&|sums| shear(&sums.wall)),
+                    wall_wear: with_error(&|sums| sums.wall.sliding * per_area(&sums.wall)),
                     wall_axial_velocity: with_error(&|sums| sums.wall.velocity()),
                 }
             })

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use peristalsis_engine::{Ends, Ledger, Passages, Passed, Simulation};
 
+use crate::mixing::{Kinds, Mixing};
+use crate::segregation::Segregation;
 use crate::series::{Join, joined};
 use crate::view::View;
 
@@ -89,6 +91,10 @@ pub struct Sample {
     pub discharged: f64,
     /// Mass between the ends.
     pub hold_up: f64,
+    /// How the grains were mixed at the end of the last whole period, where that can be said.
+    pub mixing: Option<Mixing>,
+    /// How the sizes were segregated then.
+    pub segregation: Segregation,
     /// The energy ledger since the start.
     pub ledger: Ledger,
 }
@@ -121,7 +127,11 @@ pub struct Observer {
     /// z of the grains as they have moved, turns round the tube counted \[d\].
     pub(crate) unfolded: Vec<f64>,
     /// The same at the start of the run.
-    start: Vec<f64>,
+    pub(crate) start: Vec<f64>,
+    /// How the grains lay at the start of the run.
+    pub(crate) kinds: Kinds,
+    mixing: Option<Mixing>,
+    segregation: Segregation,
     ledger: Ledger,
     passages: Passages,
 }
@@ -129,21 +139,26 @@ pub struct Observer {
 impl Observer {
     /// Begins an interval now, and counts displacements from here.
     pub fn new(simulation: &Simulation) -> Self {
-        let now = Self::at(simulation, Vec::new());
-        Self {
+        let now = Self::at(simulation, (Vec::new(), Kinds::new(simulation)));
+        let mut observer = Self {
             start: now.unfolded.clone(),
             ..now
-        }
+        };
+        observer.end_period(&View::of(simulation));
+        observer
     }
 
     /// Begins an interval now; displacements count from `start`.
-    fn at(simulation: &Simulation, start: Vec<f64>) -> Self {
+    fn at(simulation: &Simulation, (start, kinds): (Vec<f64>, Kinds)) -> Self {
         let grains = simulation.bodies().grains;
         Self {
             time: simulation.time(),
             cycles: simulation.wall().cycles(),
             unfolded: (0..grains).map(|i| simulation.travelled(i)).collect(),
             start,
+            kinds,
+            mixing: None,
+            segregation: Segregation::default(),
             ledger: *simulation.ledger(),
             passages: simulation
                 .ends()
@@ -154,7 +169,7 @@ impl Observer {
 
     /// Whether it can be the observer of so many grains.
     pub fn fits(&self, grains: usize) -> bool {
-        [self.unfolded.len(), self.start.len()] == [grains; 2]
+        [self.unfolded.len(), self.start.len()] == [grains; 2] && self.kinds.fits(grains)
     }
 
     /// Ends the interval, begins the next, and answers what happened between.
@@ -165,8 +180,30 @@ impl Observer {
 
     /// Ends the interval and begins the next; answers the observer as it stood when the one that ends began.
     pub fn end_interval(&mut self, view: &View<'_>) -> Self {
-        let now = Self::at(view.simulation, core::mem::take(&mut self.start));
+        let start = core::mem::take(&mut self.start);
+        let kinds = core::mem::take(&mut self.kinds);
+        let now = Self {
+            mixing: self.mixing,
+            segregation: self.segregation,
+            ..Self::at(view.simulation, (start, kinds))
+        };
         core::mem::replace(self, now)
+    }
+
+    /// How the grains were mixed at the end of the last period, where that can be said.
+    pub fn mixing(&self) -> Option<Mixing> {
+        self.mixing
+    }
+
+    /// How the sizes were segregated at the end of the last period.
+    pub fn segregation(&self) -> Segregation {
+        self.segregation
+    }
+
+    /// Ends a period where the last interval has just ended: looks how the grains lie, which takes as long as some steps.
+    pub fn end_period(&mut self, view: &View<'_>) {
+        self.mixing = Mixing::of(self, view);
+        self.segregation = Segregation::of(view);
     }
 }
 
@@ -248,6 +285,8 @@ impl Sample {
             feed_rate: mass_rate(|passed| &passed.fed),
             discharged: passed.discharged.mass,
             hold_up: hold_up(simulation),
+            mixing: after.mixing,
+            segregation: after.segregation,
             ledger: *ledger,
         }
     }

@@ -35,6 +35,24 @@ impl<'a> View<'a> {
         outside - self.simulation.ends().map_or(0, Ends::waiting)
     }
 
+    /// Largest distance from the axis that a grain of its size can have where it is, R - (d_w + d)/2 \[d\].
+    pub(crate) fn room(&self, grain: usize) -> f64 {
+        let bodies = self.simulation.bodies();
+        let thickness = self.simulation.wall().sphere_diameter() + bodies.diameter[grain];
+        self.shape.radius(bodies.position[grain].z) - 0.5 * thickness
+    }
+
+    /// r/(R - (d_w + d)/2): 0 on the axis, 1 where a grain touches the wall or is pressed into it.
+    pub(crate) fn radial_place(&self, grain: usize) -> f64 {
+        let position = self.simulation.bodies().position[grain];
+        let (from_axis, room) = (position.x.hypot(position.y), self.room(grain));
+        if from_axis < room {
+            from_axis / room
+        } else {
+            1.0
+        }
+    }
+
     /// J from the velocities of the grains inside the tube, along the wave \[1/t\].
     pub fn instantaneous_flow_rate(&self) -> f64 {
         let (bodies, wall) = (self.simulation.bodies(), self.simulation.wall());

@@ -491,3 +491,66 @@ fn a_hundred_and_one_contacts_leave_one_above() {
     assert!((found.largest - 0.2).abs() < 1e-12, "{found:?}");
     assert!((found.high - 0.0505).abs() < 1e-12, "{found:?}");
 }
+
+/// 40 grains that do not meet, in a straight tube of length 20, the even ones with another velocity than the odd ones.
+fn two_streams(even: f64, odd: f64) -> Observer {
+    let grain = |number: u32| {
+        let number = f64::from(number);
+        DVec3::new(0.0, 0.2 * number - 4.0, 0.25 + 0.5 * number)
+    };
+    let mut bodies = Bodies::grains_at_rest((0..40).map(grain).collect(), vec![0.1; 40]);
+    for (number, velocity) in bodies.velocity.iter_mut().enumerate() {
+        velocity.z = if number % 2 == 0 { even } else { odd };
+    }
+    let mut simulation = Simulation::new(bodies, wall(1.0, 0.0), parameters());
+    let mut observer = Observer::new(&simulation);
+    simulation.advance(400).expect("free flight");
+    let view = View::of(&simulation);
+    observer.end_interval(&view);
+    observer.end_period(&view);
+    observer
+}
+
+/// Grains that all move by L/4 stay apart; where every other one has moved by L/2 more, half of each kind has changed sides and
+/// each of the four cells of 10 has as many of one as of the other: M = (N - 1)/(N - C).
+#[test]
+fn grains_that_move_alike_do_not_mix_and_streams_that_pass_each_other_do() {
+    for (even, odd, expected) in [(0.25, 0.25, 0.0), (0.5, 0.0, 39.0 / 36.0)] {
+        let found = two_streams(even, odd)
+            .mixing()
+            .expect("40 grains have an index");
+        assert!((found.axial - expected).abs() < 1e-12, "{found:?}");
+        // None moved across the tube.
+        assert!(found.radial.abs() < 1e-12, "{found:?}");
+    }
+}
+
+/// Large grains outside and below, where the tube is wide.
+#[test]
+fn sizes_that_lie_apart_are_segregated() {
+    let large = |z: f64| DVec3::new(0.0, -4.0, z);
+    let small = |z: f64| DVec3::new(0.0, 1.0, z);
+    // sin(2 pi z/10) is 1 at z = 2.5 and -1 at 7.5.
+    let places = vec![large(2.5), large(12.5), small(7.5), small(17.5)];
+    let bodies = Bodies::grains_at_rest(places, vec![1.0, 1.0, 0.5, 0.5]);
+    for gravity in [DVec3::ZERO, DVec3::new(0.0, -0.001, 0.0)] {
+        let parameters = Parameters {
+            body_force: gravity,
+            ..parameters()
+        };
+        let simulation = Simulation::new(bodies.clone(), wall(1.0, 0.5), parameters);
+        let shape = TubeShape::of(&simulation);
+        let is_wide = shape.radius(2.5) > shape.radius(7.5);
+        let found = Observer::new(&simulation).segregation();
+        let is = |found: Option<f64>, expected: f64| (found.unwrap() - expected).abs() < 1e-12;
+        assert!(is(found.radial, 1.0), "{found:?}");
+        assert!(
+            is(found.belly, if is_wide { 1.0 } else { -1.0 }),
+            "{found:?}"
+        );
+        match gravity == DVec3::ZERO {
+            true => assert_eq!(found.height, None),
+            false => assert!(is(found.height, -1.0), "{found:?}"),
+        }
+    }
+}

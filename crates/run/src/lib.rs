@@ -42,8 +42,8 @@ pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing
 pub use si::SiEstimate;
 pub use stopping::Stopping;
 pub use summary::{
-    Discharge, Pumping, RowColumn, Status, Summary, SummaryKey, label, row_columns, set_by,
-    summary_keys,
+    Discharge, MixedGrains, Pumping, RowColumn, SegregatedSizes, Status, Summary, SummaryKey, Wear,
+    label, row_columns, set_by, summary_keys,
 };
 pub use tables::{
     contacts_table, gathered, grains_table, profile_table, snapshot_table, timeseries_table,

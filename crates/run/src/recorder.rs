@@ -115,6 +115,10 @@ impl Recorder {
         self.contact_forces.look(simulation);
         let view = View::of(simulation);
         let before = self.observer.end_interval(&view);
+        let ends_period = (self.samples.count() + 1).is_multiple_of(self.samples_per_period);
+        if ends_period {
+            self.observer.end_period(&view);
+        }
         let sample = Sample::of(&before, &self.observer, &view);
         self.ratios += sample.flow_rate_ratio;
         self.escaped_most = self.escaped_most.max(sample.escaped);
@@ -125,7 +129,7 @@ impl Recorder {
             self.profile.add_wall_forces(simulation);
         }
         note_wall_faults(simulation, &mut self.wall_faults);
-        if self.samples.count().is_multiple_of(self.samples_per_period) {
+        if ends_period {
             let average = self.ratios / self.samples_per_period as f64;
             // What is added to it keeps its sign, even 0.
             self.ratios = -0.0;

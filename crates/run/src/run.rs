@@ -22,7 +22,7 @@ use crate::{PHYSICS_VERSION, RunError};
 pub use self::mark::Mark;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 14;
+const STATE_LAYOUT: u32 = 15;
 /// Steps between two looks at how grains turn, of which a contact takes tens.
 const STEPS_PER_TURN: u64 = 10;
 

@@ -167,6 +167,10 @@ fn table<'a, Of: 'static>(
         .build()
 }
 
+fn has_sizes(configuration: &Configuration) -> bool {
+    configuration.grains.diameter_min < configuration.grains.diameter_max
+}
+
 fn applies(scope: Scope, configuration: &Configuration) -> bool {
     match scope {
         Scope::Always => true,
@@ -175,6 +179,12 @@ fn applies(scope: Scope, configuration: &Configuration) -> bool {
         Scope::Rolling => configuration.contact.rolling.is_some(),
         Scope::Cohesion => configuration.contact.cohesion.is_some(),
         Scope::OpenTube => configuration.inlet.is_some(),
+        Scope::PeriodicTube => configuration.inlet.is_none(),
+        Scope::Sizes => has_sizes(configuration),
+        Scope::SizesUnderGravity => {
+            let [across, up, _] = configuration.body.gravity;
+            has_sizes(configuration) && (across, up) != (0.0, 0.0)
+        }
         Scope::ElasticWall => matches!(configuration.drive.control, Control::Stress { .. }),
     }
 }

@@ -11,7 +11,7 @@ pub(crate) const PHYSICS: &str = "peristalsis.physics_version";
 /// Columns that rows of earlier versions lack, and what all of those had.
 const LATER: [(&str, &str); 1] = [("arrangement", "staggered")];
 /// Results, by how their names begin, that rows of earlier versions lack: they are missing there.
-pub(crate) const LATER_RESULTS: [&str; 7] = [
+pub(crate) const LATER_RESULTS: [&str; 15] = [
     "contact_force_",
     "mass_flow_rate_si_error",
     "discharge",
@@ -19,6 +19,14 @@ pub(crate) const LATER_RESULTS: [&str; 7] = [
     "hold_up",
     "transit_time",
     "refill_efficiency",
+    "wall_torque",
+    "wear_power",
+    "wall_wear",
+    "axial_mixing",
+    "radial_mixing",
+    "radial_segregation",
+    "height_segregation",
+    "belly_segregation",
 ];
 
 /// The row of one finished run, a table of one row.

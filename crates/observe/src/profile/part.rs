@@ -22,6 +22,8 @@ pub struct PartOfWave {
     pub normal_force: (f64, f64),
     /// The same by friction \[m d/t^2\].
     pub tangential_force: (f64, f64),
+    /// Power that its grains lose where they slide on the wall, sum of -f_t . v_t \[m d^2/t^3\].
+    pub sliding_power: (f64, f64),
     /// Mean axial velocity of its grains, laboratory frame \[d/t\].
     pub axial_velocity: (f64, f64),
     /// Mean axial velocity of the wall's spheres there \[d/t\]; 0 for a prescribed wall.
@@ -52,6 +54,7 @@ impl WaveFrameProfile {
         PartOfWave {
             normal_force: with_error(&|sums| sums.wall.normal / looks(sums)),
             tangential_force: with_error(&|sums| sums.wall.tangential / looks(sums)),
+            sliding_power: with_error(&|sums| sums.wall.sliding / looks(sums)),
             axial_velocity: with_error(&Sums::velocity),
             wall_velocity: with_error(&|sums| sums.wall.velocity()),
         }

@@ -1,8 +1,10 @@
 //! Pumping, residence and dispersion in the late part of a run.
 
+use core::f64::consts::TAU;
+
 use peristalsis_analysis::mean_with_error;
 use peristalsis_configuration::Configuration;
-use peristalsis_observe::{AxialDispersion, ContactForces, Sample};
+use peristalsis_observe::{AxialDispersion, ContactForces, PartOfWave, ProfileBin, Sample};
 
 use super::mean_of;
 
@@ -88,6 +90,50 @@ impl ForceOfContacts {
     }
 }
 
+/// Sliding of the grains on the wall: late means, each with its error. Units: d, m, t.
+///
+/// By Archard's law the volume that a wall loses is its coefficient of wear, over hardness and friction, times this work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wear {
+    /// Power that grains lose where they slide on the wall, sum of -f_t . v_t over these contacts.
+    pub power: (f64, f64),
+    /// The same per area 2 pi R dz of the wall. Each place of a periodic tube sees all of the wave, and bears this on average.
+    pub power_per_area: (f64, f64),
+}
+
+impl Wear {
+    /// From a wavelength's profile; `None` without friction.
+    pub(super) fn of(
+        configuration: &Configuration,
+        whole: &PartOfWave,
+        profile: &[ProfileBin],
+    ) -> Option<Self> {
+        configuration.contact.friction?;
+        let (power, error) = whole.sliding_power;
+        let tube = &configuration.tube;
+        let waves = f64::from(tube.waves);
+        let radius = profile.iter().map(|bin| bin.radius).sum::<f64>() / profile.len() as f64;
+        let area = TAU * radius * tube.wavelength;
+        Some(Self {
+            power: (waves * power, waves * error),
+            power_per_area: (power / area, error / area),
+        })
+    }
+}
+
+/// P/(2 pi f) for the late mean power P of the wall or drive and the mean frequency f at which waves passed then, and its
+/// error \[m d^2/t^2\]; `None` of a wave that stood.
+pub(super) fn wall_torque(samples: &[Sample], late: &[Sample]) -> Option<(f64, f64)> {
+    let early = &samples[..samples.len() - late.len()];
+    let of = |sample: Option<&Sample>| sample.map_or((0.0, 0.0), |it| (it.period, it.time));
+    let (before, after) = (of(early.last()), of(late.last()));
+    let frequency = (after.0 - before.0) / (after.1 - before.1);
+    let per_power = 1.0 / (TAU * frequency);
+    let power = mean_of(late, |sample| sample.wall_power);
+    let error = error_of(late.iter().map(|sample| sample.wall_power));
+    (frequency > 0.0).then_some((per_power * power, per_power * error))
+}
+
 /// Mean time that a grain takes through the length of the tube, and its standard error \[t\]; `None` unless the grains go
 /// along the wave.
 ///
@@ -143,6 +189,26 @@ mod tests {
             assert!(none.efficiency.0.is_nan() && none.efficiency.1.is_nan());
             assert!((none.useful_power.0 - useful_power).abs() < 1e-12);
         }
+    }
+
+    /// Two waves a time, of which each takes the work 2 pi 0.75.
+    #[test]
+    fn the_torque_is_the_work_of_a_wave_over_a_turn() {
+        let all = samples(|time| Sample {
+            time: time + 0.5,
+            period: 2.0 * (time + 0.5),
+            wall_power: 2.0 * TAU * 0.75,
+            ..Sample::default()
+        });
+        for late in [&all[..], &all[30..]] {
+            let (torque, error) = wall_torque(&all, late).unwrap();
+            assert!((torque - 0.75).abs() < 1e-12 && error.abs() < 1e-12);
+        }
+        let still = samples(|time| Sample {
+            time,
+            ..Sample::default()
+        });
+        assert_eq!(wall_torque(&still, &still[20..]), None);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The outcome of a run in numbers.
 
+mod arrangement;
 mod discharge;
 mod late;
 mod local_flow;
@@ -11,9 +12,10 @@ use peristalsis_configuration::{Configuration, Units};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 
+pub use arrangement::{MixedGrains, SegregatedSizes};
 pub use discharge::Discharge;
-pub use late::Pumping;
-use late::{ForceOfContacts, axial_dispersion, error_of, residence_time};
+use late::{ForceOfContacts, axial_dispersion, error_of, residence_time, wall_torque};
+pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;
 pub(crate) use table::word;
 pub use written::{RowColumn, SummaryKey, label, row_columns, set_by, summary_keys};
@@ -73,6 +75,15 @@ pub struct Summary {
     pub wall_pressure: f64,
     /// Largest late mean of it over the phases of the wave, each a bin of the profile wide \[m/(d t^2)\].
     pub wall_pressure_largest: f64,
+    /// Sliding of the grains on the wall, where there is friction.
+    pub wear: Option<Wear>,
+    /// W/(2 pi) for the late mean work W of the wall or drive in a period, and its error: the torque of a shaft that makes one
+    /// wave a turn \[m d^2/t^2\]; `None` of a static wave.
+    pub wall_torque: Option<(f64, f64)>,
+    /// How the grains mixed; `None` of too few, or of an open tube.
+    pub mixed: Option<MixedGrains>,
+    /// Where grains of several sizes gathered.
+    pub segregated: SegregatedSizes,
     /// Steps done.
     pub steps: u64,
     /// Time reached \[t\].
@@ -114,12 +125,14 @@ impl Summary {
         let late = recorder.late(fraction);
         let late_intervals = late.len() as u64 * recorder.intervals();
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
+        let of_period = (samples_per_period / recorder.intervals()).max(1) as usize;
         let flow_rate_ratio = match mean_with_error(&ratios_of(late)) {
             Ok(estimate) => (estimate.mean, estimate.error),
             Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
         };
         let profile = late_profile(run);
         let part = |part| recorder.profile().late_part(fraction, part);
+        let whole = part(WavePart::Whole);
         let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
         let escaped = |sample: &Sample| sample.escaped as u64;
         let faults = recorder.wall_faults().iter();
@@ -138,6 +151,10 @@ impl Summary {
             discharge: Discharge::of(run, late),
             wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
             wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
+            wear: Wear::of(configuration, &whole, &profile),
+            wall_torque: wall_torque(samples, late),
+            mixed: MixedGrains::of(samples, late, of_period),
+            segregated: SegregatedSizes::of(late, of_period),
             steps: simulation.step(),
             time: simulation.time(),
             periods: simulation.wall().cycles(),
@@ -150,7 +167,7 @@ impl Summary {
                 .late_averages(late_intervals / samples_per_period)
                 .to_vec(),
             late_intervals,
-            whole: part(WavePart::Whole),
+            whole,
             narrow: part(WavePart::Narrow),
             front: part(WavePart::Front),
             throat: LocalFlow::throat(&profile),
@@ -183,10 +200,14 @@ impl Summary {
         }
     }
 
+    /// The units of the configuration, if it says them.
+    pub fn units(&self) -> Option<&Units> {
+        self.configuration.units.as_ref()
+    }
+
     /// A number in SI, by the SI value of its unit; `None` where the configuration does not say its units.
     pub fn in_si(&self, value: f64, unit: fn(&Units) -> f64) -> Option<f64> {
-        let units = self.configuration.units.as_ref()?;
-        Some(value * unit(units))
+        Some(value * unit(self.units()?))
     }
 
     /// Late mean of the mass that flows and its error \[kg/s\]; `None` where the configuration does not say its units.

@@ -187,6 +187,7 @@ impl Serialize for Summary {
             ("pumping", self.pumping.is_some()),
             ("throat", true),
             ("belly", true),
+            ("open", self.discharge.is_some()),
             ("si", self.configuration.units.is_some()),
         ] {
             let entries = applies.then(|| Object(self.entries(group)));
@@ -206,8 +207,9 @@ impl Serialize for Summary {
 
 #[cfg(test)]
 mod tests {
-    use super::super::variance;
+    use super::super::{Status, variance};
     use super::*;
+    use crate::run::Run;
 
     #[test]
     fn columns_have_distinct_names_and_all_are_explained() {
@@ -219,6 +221,30 @@ mod tests {
         }
         assert_eq!(label("flow_rate"), Some("flow rate J"));
         assert_eq!(label("steps"), None);
+    }
+
+    #[test]
+    fn every_key_is_in_the_summary_of_a_run_that_has_it() {
+        let open = [
+            "tube.ends=\"open\"",
+            "inlet.waiting=4",
+            "drive.body_force=-0.002",
+        ];
+        let small = ["tube.waves=1", "grains.number=30", "run.periods=0.1"];
+        let of = |settings: Vec<&str>| {
+            let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+            let mut run = Run::new(configuration).unwrap();
+            run.advance().unwrap();
+            let json = Summary::of(&run, Status::Interrupted, None).to_json();
+            serde_json::from_str::<serde_json::Value>(&json).unwrap()
+        };
+        let found = [of(small.to_vec()), of([small.as_slice(), &open].concat())];
+        for key in summary_keys() {
+            let path = format!("/{}", key.key.replace('.', "/"));
+            let is_in_one = found.iter().any(|it| it.pointer(&path).is_some());
+            // Neither has units.
+            assert!(is_in_one || key.key.starts_with("si."), "{}", key.key);
+        }
     }
 
     #[test]

@@ -33,7 +33,7 @@ fn page() -> String {
          The rows of a study have these columns, besides `identity` and `replicate`. `summary.json` has them as keys, some \
          in objects of their own: `throat_density` is `density` in `throat`.\n\n{head}{outcome}\n\
          ## The time series\n\n\
-         Columns of friction, of an elastic wall, of a body force and of an open tube are there in runs that have these.\n\n{head}{}\n\
+         Columns of friction, of an elastic wall, of a body force, of an open tube, of mixing (periodic tubes) and of segregation (several sizes) are there in runs that have these.\n\n{head}{}\n\
          ## The profile in the wave frame\n\n{head}{}\n\
          ## The flow wave by wave\n\n{head}{}",
         rows(COLUMNS.iter().map(|column| &column.quantity)),

@@ -87,8 +87,12 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         summary.in_si(summary.wall_pressure_largest, Units::pressure),
     ) {
         let number = |value| plain_text(&plain(value));
+        let torque = summary.wall_torque.map(|(torque, _)| torque);
+        let torque = torque.and_then(|torque| summary.in_si(torque, Units::energy));
+        let torque = torque.map(|it| format!(" (torque {} N m at a wave a turn)", number(it)));
+        let torque = torque.unwrap_or_default();
         flow.push_str(&format!(
-            "\nin SI: {} kg/h, wall power {} W, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
+            "\nin SI: {} kg/h, wall power {} W{torque}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
             plain_text(&with_error(3600.0 * mass_flow, 3600.0 * error)),
             number(power),
             number(pressure),
@@ -104,6 +108,9 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             ));
         }
     }
+    flow.push_str(&wear(summary));
+    flow.push_str(&mixing(run, summary));
+    flow.push_str(&segregation(run, summary));
     if let Some(discharge) = &summary.discharge {
         flow.push_str(&through(discharge, summary));
     }
@@ -122,6 +129,76 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         text.push_str(&format!("the wall: {diagnosis}\n"));
     }
     text
+}
+
+/// What sliding takes at the wall, where grains slide there.
+fn wear(summary: &Summary) -> String {
+    let Some(wear) = summary.wear.filter(|wear| wear.power.0 > 0.0) else {
+        return String::new();
+    };
+    let measured = |(value, error)| plain_text(&with_error(value, error));
+    let in_si = |pair: (f64, f64), unit: &dyn Fn(&Units) -> f64| {
+        let units = summary.units()?;
+        Some(measured((pair.0 * unit(units), pair.1 * unit(units))))
+    };
+    let per_area = |units: &Units| units.pressure() * units.velocity();
+    let power = in_si(wear.power, &Units::power);
+    let (power, per_area) = match (power, in_si(wear.power_per_area, &per_area)) {
+        (Some(power), Some(per_area)) => (format!("{power} W"), format!("{per_area} W/m^2")),
+        _ => (
+            format!("{} m d^2/t^3", measured(wear.power)),
+            format!("{} m/t^3", measured(wear.power_per_area)),
+        ),
+    };
+    format!("\nwear: sliding on the wall takes {power}, {per_area} of wall")
+}
+
+/// How far the grains are mixed, once a period has passed.
+fn mixing(run: &Run, summary: &Summary) -> String {
+    let Some(mixed) = summary.mixed.filter(|_| run.recorder().periods() > 0) else {
+        return String::new();
+    };
+    let measured = |(value, error)| plain_text(&with_error(value, error));
+    let since = |time: Option<f64>| {
+        let rate = run.configuration().drive.strain_rate;
+        time.map(|time| match rate > 0.0 {
+            true => format!(" (half after {} periods)", tenths(time * rate)),
+            false => format!(" (half after t = {time:.1})"),
+        })
+        .unwrap_or_default()
+    };
+    format!(
+        "\nmixing, 0 apart to 1 at random: {}{} along the tube, {}{} across it",
+        measured(mixed.axial),
+        since(mixed.axial_time),
+        measured(mixed.radial),
+        since(mixed.radial_time)
+    )
+}
+
+/// Where large grains gather, if not by chance.
+fn segregation(run: &Run, summary: &Summary) -> String {
+    let grains = run.configuration().grains.number as f64;
+    let by_chance = 2.0 / (grains - 1.0).sqrt();
+    let sizes = summary.segregated;
+    let places = [
+        (sizes.radial, ["near the wall", "near the axis"]),
+        (sizes.height, ["on top", "below"]),
+        (sizes.belly, ["in the bellies", "in the throats"]),
+    ];
+    let gathered = places.into_iter().filter_map(|(found, [above, below])| {
+        let (correlation, error) = found?;
+        let place = if correlation > 0.0 { above } else { below };
+        let size = plain_text(&with_error(correlation.abs(), error));
+        (correlation.abs() > by_chance).then(|| format!("{place} ({size})"))
+    });
+    match gathered.collect::<Vec<_>>().as_slice() {
+        [] => String::new(),
+        gathered => format!(
+            "\nlarge grains gather, by correlation: {}",
+            gathered.join(", ")
+        ),
+    }
 }
 
 /// What passes through an open tube.

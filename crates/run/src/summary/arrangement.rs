@@ -1,0 +1,108 @@
+//! How the grains lay in the late part of a run: mixed, and segregated by size.
+
+use peristalsis_observe::{Mixing, Sample, Segregation};
+
+use super::late::error_of;
+
+/// M from which on grains count as mixed by half.
+const MIXED: f64 = 0.5;
+
+/// Mixing of the grains by where they began: late means of M, each with its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MixedGrains {
+    /// Along the tube, [`Mixing::axial`].
+    pub axial: (f64, f64),
+    /// Across it, [`Mixing::radial`].
+    pub radial: (f64, f64),
+    /// End of the first period in which M along the tube has come to 1/2 \[t\].
+    pub axial_time: Option<f64>,
+    /// The same across it \[t\].
+    pub radial_time: Option<f64>,
+}
+
+impl MixedGrains {
+    /// Of all samples of a run and the late ones, `each` of which are a period; `None` where there is no index.
+    pub(super) fn of(samples: &[Sample], late: &[Sample], each: usize) -> Option<Self> {
+        let measured =
+            |of: fn(&Mixing) -> f64| measured(late, each, |sample| sample.mixing.as_ref().map(of));
+        let time = |of: fn(&Mixing) -> f64| {
+            let mixed = samples
+                .iter()
+                .find(|sample| sample.mixing.as_ref().is_some_and(|it| of(it) >= MIXED));
+            mixed.map(|sample| sample.time)
+        };
+        Some(Self {
+            axial: measured(|it| it.axial)?,
+            radial: measured(|it| it.radial)?,
+            axial_time: time(|it| it.axial),
+            radial_time: time(|it| it.radial),
+        })
+    }
+}
+
+/// Segregation of grains of several sizes: late means of correlations, each with its error; `None` where there is none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegregatedSizes {
+    /// With the distance from the axis, [`Segregation::radial`].
+    pub radial: Option<(f64, f64)>,
+    /// With the height, [`Segregation::height`].
+    pub height: Option<(f64, f64)>,
+    /// With the radius of the tube, [`Segregation::belly`].
+    pub belly: Option<(f64, f64)>,
+}
+
+impl SegregatedSizes {
+    /// Of the late samples of a run, `each` of which are a period.
+    pub(super) fn of(late: &[Sample], each: usize) -> Self {
+        let measured = |of: fn(&Segregation) -> Option<f64>| {
+            measured(late, each, |sample| of(&sample.segregation))
+        };
+        Self {
+            radial: measured(|it| it.radial),
+            height: measured(|it| it.height),
+            belly: measured(|it| it.belly),
+        }
+    }
+}
+
+/// Mean and error of what is looked at once in a period of `each` samples, which all say it until the next; `None` where one of
+/// the numbers is missing.
+fn measured(
+    late: &[Sample],
+    each: usize,
+    value: impl Fn(&Sample) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    let periods = late.iter().rev().step_by(each);
+    let values: Option<Vec<f64>> = periods.map(value).collect();
+    let values = values.filter(|it| !it.is_empty())?;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    Some((mean, error_of(values.into_iter())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grains_are_mixed_by_half_from_the_first_period_on_that_reaches_it() {
+        let sample = |step: u32| Sample {
+            time: f64::from(step),
+            mixing: Some(Mixing {
+                axial: 0.1 * f64::from(step),
+                radial: 0.01 * f64::from(step),
+            }),
+            ..Sample::default()
+        };
+        let samples: Vec<Sample> = (0..40).map(sample).collect();
+        let found = MixedGrains::of(&samples, &samples[20..], 1).unwrap();
+        assert_eq!((found.axial_time, found.radial_time), (Some(5.0), None));
+        assert!((found.axial.0 - 2.95).abs() < 1e-12 && (found.radial.0 - 0.295).abs() < 1e-12);
+        // Of two samples a period the last ones: steps 21, 23, ... 39.
+        let found = MixedGrains::of(&samples, &samples[20..], 2).unwrap();
+        assert!((found.axial.0 - 3.0).abs() < 1e-12);
+        // An open tube has no index, grains of one size no segregation.
+        let open = [Sample::default(); 3];
+        assert_eq!(MixedGrains::of(&open, &open, 1), None);
+        assert_eq!(SegregatedSizes::of(&open, 1).height, None);
+    }
+}
