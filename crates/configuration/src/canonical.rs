@@ -129,6 +129,7 @@ impl Configuration {
             "tube.arrangement_seed" => self.tube.arrangement.is_drawn(),
             path if RINGS.contains(&path) => self.tube.arrangement != Arrangement::Smooth,
             "initial.axial_velocity" => self.initial.axial_velocity.to_bits() != natural.to_bits(),
+            "initial.temperature" => self.initial.temperature != 0.0,
             path => !absent.contains(&path),
         });
         entries

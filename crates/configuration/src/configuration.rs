@@ -272,6 +272,10 @@ pub struct Initial {
     /// Velocity of every grain along the wave at t = 0. Default: 0 from rest, the wave's speed from jammed.
     #[schemars(extend("x-unit" = "d t^-1", "minimum" = -1e9, "maximum" = 1e9, "default" = null))]
     pub axial_velocity: f64,
+    /// Granular temperature at t = 0: besides the velocity along the wave every component of a grain's velocity is drawn
+    /// from a normal distribution of variance temperature/mass.
+    #[schemars(extend("x-unit" = "m d^2 t^-2", "minimum" = 0, "maximum" = 1e6))]
+    pub temperature: f64,
 }
 
 /// The run. Exactly one of periods and duration is given.

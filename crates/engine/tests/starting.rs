@@ -12,6 +12,7 @@ fn packing(number: usize, state: InitialState, seed: u64) -> Packing {
         sizes: Sizes::Uniform([0.8, 1.0]),
         state,
         axial_velocity: 0.0,
+        temperature: 0.0,
         seed,
     }
 }
@@ -84,6 +85,28 @@ fn packed_grains_stand_inside_at_rest() {
             }
         }
     }
+}
+
+#[test]
+fn a_hot_start_has_its_temperature_and_stands_as_a_cold_one() {
+    let wall = strained(coarse(20), -1.0, 2.6, 0.05);
+    let cold = packing(1_500, InitialState::Rest, 1);
+    let hot = Packing {
+        axial_velocity: 0.3,
+        temperature: 0.01,
+        ..cold.clone()
+    };
+    let [(cold, _), (hot, _)] = [cold, hot].map(|packing| pack(&packing, &wall, LINEAR).unwrap());
+    assert_eq!(cold.position, hot.position);
+    let grains = hot.grains as f64;
+    let mean = hot.velocity[..hot.grains].iter().sum::<DVec3>() / grains;
+    let of_grain = |i: usize| hot.mass[i] * (hot.velocity[i] - mean).abs().powf(2.0) / grains;
+    let temperature = (0..hot.grains).map(of_grain).sum::<DVec3>();
+    // A variance from N normal numbers has the relative error (2/N)^(1/2), 0.037 here; four of them.
+    for component in temperature.to_array() {
+        assert!((component / 0.01 - 1.0).abs() < 0.15, "{temperature}");
+    }
+    assert!((mean - DVec3::new(0.0, 0.0, 0.3)).length() < 0.02, "{mean}");
 }
 
 #[test]

@@ -47,6 +47,7 @@ pub(crate) fn assemble_unless(
         sizes: configuration.grains.distribution(),
         state: configuration.initial.state,
         axial_velocity: wall.heading() * configuration.initial.axial_velocity,
+        temperature: configuration.initial.temperature,
         seed: configuration.run.seed,
     };
     let (bodies, report) = pack_unless(&packing, &wall, configuration.contact.normal, stop)?;

@@ -425,6 +425,13 @@ fn check_settling(configuration: &Configuration, context: &mut Context<'_>) {
              or take initial.state = \"rest\""
                 .into(),
         );
+    } else if configuration.initial.temperature != 0.0 {
+        context.refuse::<()>(
+            ProblemKind::Inconsistent,
+            &["initial.temperature", "initial.state"],
+            "grains that have settled are at rest".into(),
+            "initial.state = \"rest\", or no initial.temperature".into(),
+        );
     }
 }
 

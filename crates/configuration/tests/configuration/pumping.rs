@@ -150,6 +150,10 @@ fn grains_settle_under_gravity_in_a_wall_that_stands_still() {
     let settings = ["body.gravity=[0, -0.001, 0]", "initial.state=settled"];
     let elastic = only_problem(read(None, Some("frictional"), &settings));
     assert!(elastic.message.contains("stands still"), "{elastic:?}");
+    let text = "preset = \"frictionless\"\n[body]\ngravity = [0, -0.001, 0]\n[initial]\nstate = \"settled\"\ntemperature = 0.01\n";
+    let hot = only_problem(read(Some(text), None, NO_OVERRIDES));
+    assert_eq!(hot.key.as_deref(), Some("initial.temperature"));
+    assert_eq!(hot.labels[0].line_and_column().0, 6);
 }
 
 #[test]

@@ -157,6 +157,7 @@ fn strain_controlled(
             InitialState::Rest | InitialState::Settled | InitialState::Placed => 0.0,
             InitialState::Jammed => -strain_rate * lattice.wavelength,
         },
+        temperature: 0.0,
         seed: 1,
     };
     (
@@ -182,6 +183,7 @@ fn stress_controlled() -> (Packing, Wall, ContactModel) {
         sizes: Sizes::Uniform([0.8, 1.0]),
         state: InitialState::Jammed,
         axial_velocity: strain_rate * lattice.wavelength,
+        temperature: 0.0,
         seed: 1,
     };
     (packing, wall, contact)

@@ -13,8 +13,8 @@ use rand_core::SeedableRng;
 
 pub use peristalsis_physics::method::InitialState;
 
-pub(crate) use self::packing::uniform;
 pub use self::packing::{LARGEST_MEAN_OVERLAP, Packing, PackingReport};
+pub(crate) use self::packing::{standard_normal, uniform};
 pub use self::settling::{AT_REST, settle};
 
 use crate::bodies::Bodies;
@@ -25,6 +25,7 @@ use crate::wall::Wall;
 enum Stream {
     Diameters = 1,
     Positions = 2,
+    Velocities = 4,
 }
 
 /// Random numbers of a purpose.
@@ -86,8 +87,15 @@ pub fn pack_unless(
         report = with_normal_law!(normal, law => relaxation::grow(&law, &mut bodies, wall, stop)?);
     }
     report.inserted = inserted;
-    for velocity in &mut bodies.velocity[..packing.number] {
+    let mut velocities = random(packing.seed, Stream::Velocities);
+    let grains = bodies.velocity.iter_mut().zip(&bodies.mass);
+    for (velocity, mass) in grains.take(packing.number) {
         *velocity = DVec3::new(0.0, 0.0, packing.axial_velocity);
+        if packing.temperature > 0.0 {
+            let deviation = (packing.temperature / mass).sqrt();
+            *velocity +=
+                deviation * DVec3::from([(); 3].map(|()| standard_normal(&mut velocities)));
+        }
     }
     Ok((bodies, report))
 }

@@ -19,6 +19,8 @@ pub struct Packing {
     pub state: InitialState,
     /// Velocity of all grains along z \[d/t\].
     pub axial_velocity: f64,
+    /// m ⟨v²⟩/3 of the velocities that each grain has besides \[m d^2/t^2\].
+    pub temperature: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }
@@ -36,6 +38,13 @@ pub struct PackingReport {
     pub largest_overlap: f64,
     /// Elastic energy stored \[m d^2/t^2\].
     pub stored_energy: f64,
+}
+
+/// Of mean 0 and variance 1, by the transform of Box and Muller.
+pub(crate) fn standard_normal(random: &mut ChaCha8Rng) -> f64 {
+    // In (0, 1]: its logarithm is finite.
+    let radius = libm::sqrt(-2.0 * libm::log(1.0 - uniform(random)));
+    radius * libm::cos(core::f64::consts::TAU * uniform(random))
 }
 
 /// Uniform in [0, 1), from the upper 53 bits.

@@ -241,6 +241,7 @@ pub(crate) fn packed(
         sizes: Sizes::Uniform([diameter_min, 1.0]),
         state: InitialState::Rest,
         axial_velocity: 0.0,
+        temperature: 0.0,
         seed,
     };
     pack(&packing, wall, normal).expect("the grains fit").0

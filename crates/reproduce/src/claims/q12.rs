@@ -271,10 +271,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     });
     draft.table("predictions", &[], rows);
     let drags = Drags::all(evidence)?;
-    let told: Vec<bool> = drags.iter().filter_map(Drags::explains).collect();
-    if !told.is_empty() {
-        let met = told.iter().filter(|met| **met).count();
-        draft.paragraph("measured", values!(met, all = told.len()));
+    let told = drags
+        .iter()
+        .filter_map(|one| Some((one.temperature, one.explains()?)));
+    let met = grouped(told, |(temperature, _)| *temperature).into_iter();
+    let met = met.map(|(temperature, told)| {
+        let (met, all) = (told.iter().filter(|(_, met)| *met).count(), told.len());
+        PROSE.text("met", values!(met, all, temperature))
+    });
+    let met: Vec<String> = met.collect();
+    if !met.is_empty() {
+        draft.paragraph("measured", values!(met = met.join(", ")));
         draft.table("drags", &[], drags.iter().map(Drags::row));
     }
     let panels = predictions.iter().map(|one| one.panel(&groups));

@@ -8,7 +8,13 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q2.md"));
 
-const STUDIES: &[&str] = &["roughness", "walls", "walls-drawn", "wavelength"];
+const STUDIES: &[&str] = &[
+    "roughness",
+    "walls",
+    "walls-drawn",
+    "walls-sought",
+    "wavelength",
+];
 
 pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, STUDIES, examine);
 
@@ -103,12 +109,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut waves = evidence.study("wavelength")?.rows();
     waves.retain(of_one_speed);
     let mut others = evidence.study("walls")?.rows();
-    others.extend(evidence.study("walls-drawn")?.rows());
+    for study in ["walls-drawn", "walls-sought"] {
+        others.extend(evidence.study(study)?.rows());
+    }
     candidates(&mut draft, others, &waves);
     draft.table("lattices", &[], walls.iter().map(Wall::row));
     draft.chart("roughness", &[], ChartFigure::new(panel))?;
     Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
 }
+
+/// Waves in the tubes of the presets.
+const WAVES: f64 = 10.0;
 
 /// What one arrangement of wall spheres shows over the strain rates.
 struct Candidate {
@@ -173,10 +184,18 @@ impl Candidate {
 /// The walls that the source could have had, side by side, and waves of one speed, of which the strain rate follows from their
 /// lengths.
 fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
-    let groups = grouped(walls, |row| (arrangement(row), row.lattice()));
-    let found = groups.iter().filter_map(|((arrangement, lattice), rows)| {
-        Candidate::of(wall_name(*lattice, arrangement), rows)
+    let groups = grouped(walls, |row| {
+        (arrangement(row), row.lattice(), row.number("waves"))
     });
+    let found = groups
+        .iter()
+        .filter_map(|((arrangement, lattice, waves), rows)| {
+            let mut name = wall_name(*lattice, arrangement);
+            if *waves != WAVES {
+                name.push_str(&PROSE.text("so long", values!(waves)));
+            }
+            Candidate::of(name, rows)
+        });
     let mut found: Vec<Candidate> = found.collect();
     if found.is_empty() {
         return;

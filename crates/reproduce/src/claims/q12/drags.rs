@@ -11,10 +11,12 @@ const CRITICAL: &str = "roughness";
 /// Part of a run that its late mean covers.
 const LATE: f64 = 0.25;
 
-/// Both drags in one tube at one strain rate.
+/// Both drags in one tube at one strain rate, the wall's at one temperature.
 pub(super) struct Drags {
     strain_rate: f64,
     wall: String,
+    /// Granular temperature with which the grains begin to coast \[m d^2/t^2\].
+    pub(super) temperature: f64,
     /// Rate at which grains that coast in the straight tube lose their speed.
     taken: Uncertain,
     /// Rates at which the waves give theirs to grains at rest, by ascending width.
@@ -43,8 +45,13 @@ impl Drags {
         let critical = evidence.study(CRITICAL)?.rows();
         let waves = by_strain_rate(evidence.study(WAVES)?.rows());
         let coasting = evidence.study(WALL)?.rows();
-        let tubes = grouped(coasting, |row| (row.strain_rate(), row.lattice()));
-        let of = |((strain_rate, lattice), rows): ((f64, Lattice), Vec<Row<'_>>)| {
+        let key = |row: &Row<'_>| {
+            let temperature = row.number("initial.temperature");
+            (temperature, row.strain_rate(), row.lattice())
+        };
+        let tubes = grouped(coasting, key);
+        let of = |(of, rows): ((f64, f64, Lattice), Vec<Row<'_>>)| {
+            let (temperature, strain_rate, lattice) = of;
             let (_, waves) = waves.iter().find(|(rate, _)| *rate == strain_rate)?;
             let widths = grouped(waves.iter().copied(), Row::width).into_iter();
             let given = widths.map(|(width, rows)| (width, scattered(&rows, given)));
@@ -54,6 +61,7 @@ impl Drags {
             Some(Self {
                 strain_rate,
                 wall: wall_name(lattice, STAGGERED),
+                temperature,
                 taken: scattered(&rows, taken),
                 given: given.filter(|(_, rate)| rate.value.is_finite()).collect(),
                 diameter: 2.0 * rows[0].radius(),
@@ -101,6 +109,7 @@ impl Drags {
         vec![
             self.wall.clone(),
             self.strain_rate.to_string(),
+            number(self.temperature, 3),
             in_thousandths(self.taken),
             balance,
             cell(self.critical),

@@ -5,6 +5,7 @@ mod cohesion;
 mod errors;
 mod gravity;
 mod haff;
+mod janssen;
 mod material;
 mod normal;
 mod oblique;
@@ -31,6 +32,7 @@ pub const CASES: &[Case] = &[
     Case::new("gravity", gravity::PROSE, gravity::examine),
     Case::new("rolling", rolling::PROSE, rolling::examine),
     Case::new("cohesion", cohesion::PROSE, cohesion::examine),
+    Case::new("janssen", janssen::PROSE, janssen::examine),
     Case::new("chain", chain::PROSE, chain::examine),
     Case::new("haff", haff::PROSE, haff::examine),
 ];

@@ -60,6 +60,7 @@ pub(crate) fn borne_weight(contact: ContactModel, means: Means, gravity: DVec3) 
         sizes: Sizes::Uniform([0.8, 1.0]),
         state: InitialState::Settled,
         axial_velocity: 0.0,
+        temperature: 0.0,
         seed: 1,
     };
     let parameters = Parameters {

@@ -2,6 +2,7 @@
 
 pub(crate) mod chain;
 pub(crate) mod cohering;
+pub(crate) mod column;
 pub(crate) mod falling;
 pub(crate) mod gas;
 pub(crate) mod impact;
