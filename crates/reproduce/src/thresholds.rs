@@ -198,10 +198,10 @@ pub(crate) const Q11_NEEDED: Statistics = Statistics::of(1, 7, 5, 150);
 
 /// For an answer to Q12, of each tube: widths and replicates at one strain rate. The number of tubes is asked for apart.
 pub(crate) const Q12_NEEDED: Statistics = Statistics::of(1, 7, 3, 150);
-/// For an answer to Q13: eight occlusions, two replicates.
-pub(crate) const Q13_NEEDED: Statistics = Statistics::of(1, 8, 2, 36);
-/// For an answer to Q14: without and with a head, two replicates of each drive.
-pub(crate) const Q14_NEEDED: Statistics = Statistics::of(1, 2, 2, 28);
+/// For an answer to Q13: seven occlusions, three replicates.
+pub(crate) const Q13_NEEDED: Statistics = Statistics::of(1, 7, 3, 42);
+/// For an answer to Q14: without and with a head, three replicates of each drive.
+pub(crate) const Q14_NEEDED: Statistics = Statistics::of(1, 2, 3, 54);
 /// For an answer to Q15: outlets and replicates.
 pub(crate) const Q15_NEEDED: Statistics = Statistics::of(1, 6, 3, 24);
 /// Tubes whose critical widths were not known when the predictions were made.

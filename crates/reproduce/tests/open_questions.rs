@@ -473,64 +473,83 @@ fn the_law_of_the_critical_width_is_told_from_others() {
     assert_verdict(&studies(&by_stiffness, 3), Verdict::Open);
 }
 
-/// A tube of radius 2.5 whose flow grows with the occlusion, and falls with the head as far as the throat is open.
-fn closure(replicates: i32) -> Rows {
+/// A tube of radius 2.5 whose flow grows with the occlusion, and falls with the head as far as the throat is open; cohesion
+/// takes a part of it.
+fn closure(replicates: i32, cohesion: f64) -> Rows {
     let mut rows = Rows::with(&[
         ("radius", 2.5),
         ("volume_fraction", 0.3),
         ("strain_rate", 5e-3),
     ]);
-    let mut add = |width: f64, body_force: f64| {
+    let mut add = |width: f64, body_force: f64, cohesion_force: f64| {
         let open = width / 5.0;
         for replicate in 0..replicates {
-            let flow = (1.0 - open * (1.0 - 200.0 * body_force)).max(-0.5);
+            let flow = 1.0 - open * (1.0 - 200.0 * body_force) - 500.0 * cohesion * cohesion_force;
             rows.add(
                 &[("initial_state", "rest")],
                 &[
                     ("width", width),
                     ("body_force", body_force),
+                    ("contact.cohesion_force", cohesion_force),
                     ("flow_rate_ratio", flow + noise(replicate)),
                     ("flow_rate_ratio_error", 1e-3),
                     ("largest_overlap", 0.2),
+                    ("pressed", 0.25),
                 ],
             );
         }
     };
     for width in [2.5, 2.0, 1.5, 1.25, 1.0, 0.75, 0.5, 0.25, 0.0] {
-        add(width, 0.0);
-        add(width, -2e-3);
+        add(width, 0.0, 0.0);
+        add(width, -2e-3, 0.0);
     }
     for width in [2.0, 0.0] {
-        for body_force in [-1e-3, -4e-3] {
-            add(width, body_force);
+        for body_force in [-1e-3, -4e-3, -8e-3] {
+            add(width, body_force, 0.0);
         }
+    }
+    for width in [2.5, 1.0] {
+        add(width, 0.0, 2e-3);
     }
     rows
 }
 
 #[test]
 fn a_throat_that_closes_becomes_a_displacement_pump() {
-    let finding = examine("Q13", &[("closure", &closure(3))]);
+    let finding = examine("Q13", &[("closure", &closure(3, 0.1))]);
     assert_verdict(&finding, Verdict::Answered);
     // 1 - (1 - o) = 0.9 at o = 0.9; lifting 1 - 1.4 (1 - o) = 0.9 at o = 1 - 0.1/1.4.
     assert!((value(&finding, "at complete closure, lying") - 1.0).abs() < 1e-3);
     assert!((value(&finding, "90 % of the flow at complete closure, lying") - 0.9).abs() < 2e-3);
     let lifting = value(&finding, "90 % of the flow at complete closure, lifting");
     assert!((lifting - (1.0 - 0.1 / 1.4)).abs() < 2e-3, "{lifting}");
-    // 0.4 * 200 * (4e-3 - 1e-3)
-    assert_says(&finding.summary, "At the occlusion 0.60 a head of 0.0040");
-    assert_says(&finding.summary, "takes 0.24");
+    // 0.4 (1 + 200 g) = 1
+    let end = value(&finding, "ends the flow, occlusion 0.60");
+    assert!((end - 7.5e-3).abs() < 2e-4, "{end}");
+    assert_says(&finding.summary, "At 1.00 a head of 0.008 takes");
+    assert_says(&finding.summary, "Cohesion changes");
+    assert_says(&finding.summary, "at 2 of 2 places");
+    let rest = examine("Q13", &[("closure", &closure(3, 0.0))]);
+    assert_says(&rest.summary, "at 0 of 2 places");
     // rho a^2/(a^2 + b^2/2) at b = a.
-    let moved = &finding.tables[0].rows.last().unwrap()[4];
-    assert_says(moved, "0.2000");
+    let moved = finding.tables[0]
+        .rows
+        .iter()
+        .find(|row| row[3] == "0.0000" && row[4] == "1.00");
+    assert_says(&moved.unwrap()[6], "0.2000");
     assert_eq!(
-        examine("Q13", &[("closure", &closure(1))]).verdict,
+        examine("Q13", &[("closure", &closure(1, 0.1))]).verdict,
         Verdict::Open
     );
 }
 
 fn sequences(replicates: i32) -> (Rows, Rows) {
-    let tube = [("duty", 0.05)];
+    let tube = [
+        ("grains", 100.0),
+        ("waves", 1.0),
+        ("strain_rate", 0.01),
+        ("volume_fraction", 0.2003),
+    ];
     let (mut segments, mut waves) = (Rows::with(&tube), Rows::with(&tube));
     for (head, less) in [(0.0, 0.0), (-1e-3, 0.1)] {
         for replicate in 0..replicates {
@@ -549,6 +568,7 @@ fn sequences(replicates: i32) -> (Rows, Rows) {
                         ("body_force", head),
                         ("flow_rate_ratio", flow - less + noise(replicate)),
                         ("pumping_efficiency", 3.0 * less * flow),
+                        ("back_flow", less - flow.min(0.0)),
                     ],
                 );
             }
@@ -570,7 +590,13 @@ fn the_order_of_segments_decides_what_they_carry() {
     let (segments, waves) = sequences(5);
     let finding = examine("Q14", &[("segments", &segments), ("segments-wave", &waves)]);
     assert_verdict(&finding, Verdict::Answered);
-    assert!((value(&finding, "4 segments, head 0.0000") - 0.8).abs() < 1e-2);
+    assert!((value(&finding, "4 segments, head 0.000") - 0.8).abs() < 1e-2);
+    // Jmax = 1; 4 * 0.1 over 3 * 0.1 * 0.8.
+    assert!(
+        (value(&finding, "back flow over *J*_{max}, 4 segments, head 0.001") - 0.1).abs() < 1e-9
+    );
+    let times = value(&finding, "efficiency of the wave over that of the segments");
+    assert!((times - 4.0 / 2.4).abs() < 1e-6, "{times}");
     assert_says(&finding.summary, "*1 2 3 4* carries most");
     assert_says(&finding.summary, "*1 4 3 2* least");
     assert!(!finding.figures.is_empty());

@@ -42,31 +42,38 @@ pub(crate) fn assemble_unless(
     check_number(configuration)?;
     check_memory(configuration)?;
     let wall = walls(configuration);
-    let packing = Packing {
-        number: packed_grains(configuration),
-        sizes: configuration.grains.distribution(),
-        state: configuration.initial.state,
-        axial_velocity: wall.heading() * configuration.initial.axial_velocity,
-        temperature: configuration.initial.temperature,
-        seed: configuration.run.seed,
-    };
+    let packing = packing(configuration, wall.heading());
     let (bodies, report) = pack_unless(&packing, &wall, configuration.contact.normal, stop)?;
     let parameters = parameters(configuration);
     let (simulation, report) = match configuration.initial.state {
         InitialState::Settled => settle(bodies, wall, parameters, report, stop)?,
         _ => (Simulation::new(bodies, wall, parameters), report),
     };
-    let all = diameters(&packing, configuration.grains.number as usize);
-    Ok((
-        opened(simulation, configuration, &all[packing.number..])?,
-        report,
-    ))
+    let waiting = waiting(&packing, configuration);
+    Ok((opened(simulation, configuration, &waiting)?, report))
+}
+
+/// How the grains are packed in a tube whose wave heads that way along z.
+fn packing(configuration: &Configuration, heading: f64) -> Packing {
+    Packing {
+        number: packed_grains(configuration),
+        sizes: configuration.grains.distribution(),
+        state: configuration.initial.state,
+        axial_velocity: heading * configuration.initial.axial_velocity,
+        temperature: configuration.initial.temperature,
+        seed: configuration.run.seed,
+    }
 }
 
 /// Grains that are in the tube, or between its ends, when it is made.
 fn packed_grains(configuration: &Configuration) -> usize {
     let waiting = configuration.inlet.map_or(0, |inlet| inlet.waiting);
     (configuration.grains.number - waiting) as usize
+}
+
+/// Diameters of the grains that wait outside, drawn after those of the packed ones \[d\].
+fn waiting(packing: &Packing, configuration: &Configuration) -> Vec<f64> {
+    diameters(packing, configuration.grains.number as usize).split_off(packing.number)
 }
 
 /// The simulation with its ends open, where they are, and with the grains of these diameters that wait.
@@ -110,7 +117,8 @@ pub struct PlacedGrains {
     pub diameters: Vec<f64>,
 }
 
-/// The simulation of a configuration with grains where they are put, in their order, at time 0.
+/// The simulation of a configuration with grains where they are put, in their order, at time 0. Those that wait outside an
+/// open tube have the diameters that they would have behind packed grains.
 ///
 /// # Errors
 /// [`RunError::Placement`] for a grain that is not a sphere in the tube, or that overlaps another or the wall by more than
@@ -151,10 +159,11 @@ pub(crate) fn place(
     wall.append_spheres(&mut bodies);
     let simulation = Simulation::new(bodies, wall, parameters(configuration));
     check_places(&simulation)?;
-    let grains = &configuration.grains;
-    let mean = 0.5 * (grains.diameter_min + grains.diameter_max);
-    let waiting = grains.number as usize - number;
-    opened(simulation, configuration, &vec![mean; waiting])
+    let waiting = waiting(
+        &packing(configuration, configuration.heading()),
+        configuration,
+    );
+    opened(simulation, configuration, &waiting)
 }
 
 /// Refuses grains outside the tube, and those that share most of their place with another sphere.

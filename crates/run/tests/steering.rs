@@ -4,7 +4,8 @@ mod common;
 
 use common::configuration;
 use peristalsis_configuration::ScheduledParameter;
-use peristalsis_run::{Configuration, Run, RunError, RunFolder};
+use peristalsis_observe::Sample;
+use peristalsis_run::{Configuration, Run, RunError, RunFolder, Status, Summary};
 
 fn read_back(text: &str) -> Configuration {
     Configuration::from_toml("config.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
@@ -202,4 +203,69 @@ fn a_wave_whose_period_is_shorter_than_a_step_is_refused_and_a_few_steps_are_war
     // Its own course is no schedule that the run must reach the end of.
     run.drive_to(ScheduledParameter::Width, 2.5, 100.0).unwrap();
     assert!(run.warnings().iter().all(|it| it.key != "drive.schedule"));
+}
+
+/// A wave that stops and goes on: it runs while it may, and J/Jmax counts what flowed in the pauses.
+#[test]
+fn a_drive_pauses_and_goes_on() {
+    let steps = "drive.schedule={form=\"steps\",parameter=\"strain_rate\",at=[1,2,3],values=[0.0,RATE,0.0]}";
+    for (preset, settings, rate) in [
+        ("frictionless", "tube.waves=2", "0.05"),
+        (
+            "frictionless",
+            "tube.waves=2 tube.arrangement=smooth wall.sphere_diameter=0",
+            "0.05",
+        ),
+        (
+            "frictionless",
+            "tube.waves=2 drive.waveform=segments",
+            "0.05",
+        ),
+        ("frictional", "tube.waves=2", "0.001"),
+    ] {
+        let schedule = steps.replace("RATE", rate);
+        let words = format!("{settings} {schedule} drive.strain_rate={rate} run.periods=4");
+        let mut configuration = configuration(preset, &words);
+        configuration.observe.late_fraction = 1.0;
+        let mut run = Run::new(configuration).unwrap();
+        while !run.is_complete() {
+            run.advance().expect("does not diverge");
+        }
+        let samples = run.recorder().samples();
+        let period = run.configuration().drive.period().unwrap();
+        let since = |periods: f64| move |it: &&Sample| it.time > (periods - 1e-6) * period;
+        for (periods, cycles) in [(1.0, 1.0), (2.0, 1.0), (3.0, 2.0), (4.0, 2.0)] {
+            let sample = samples.iter().find(since(periods)).unwrap();
+            assert!(
+                (sample.period - cycles).abs() < 1e-9,
+                "{words}: {}",
+                sample.period
+            );
+        }
+        // The wall does no work while it stands.
+        let stands: Vec<&Sample> = samples
+            .iter()
+            .filter(since(1.1))
+            .filter(|it| it.time < 1.99 * period)
+            .collect();
+        assert!(
+            stands.len() > 10 && stands.iter().all(|it| it.flow_rate_ratio.is_nan()),
+            "{words}"
+        );
+        let is_prescribed = preset == "frictionless";
+        assert!(
+            !is_prescribed || stands.iter().all(|it| it.wall_power == 0.0),
+            "{words}"
+        );
+        let summary = Summary::of(&run, Status::Complete, None);
+        let moved = samples.last().unwrap().axial_displacement;
+        // Two wavelengths run, and nobody left the tube.
+        let expected = moved / (2.0 * run.configuration().tube.wavelength);
+        let (ratio, error) = summary.flow_rate_ratio;
+        assert!(
+            (ratio - expected).abs() < 0.03,
+            "{words}: {ratio} {expected}"
+        );
+        assert!(error.is_finite(), "{words}");
+    }
 }

@@ -11,7 +11,9 @@ pub(crate) const PHYSICS: &str = "peristalsis.physics_version";
 /// Columns that rows of earlier versions lack, and what all of those had.
 const LATER: [(&str, &str); 1] = [("arrangement", "staggered")];
 /// Results, by how their names begin, that rows of earlier versions lack: they are missing there.
-pub(crate) const LATER_RESULTS: [&str; 15] = [
+pub(crate) const LATER_RESULTS: [&str; 17] = [
+    "back_flow",
+    "pressed",
     "contact_force_",
     "mass_flow_rate_si_error",
     "discharge",

@@ -14,7 +14,17 @@ const SAME_STROKE: f64 = 1e-9;
 /// Segments whose orders are compared.
 const SEGMENTS: f64 = 4.0;
 
-/// One drive, without and with a head.
+/// What a drive does against one head.
+struct Flow {
+    /// Body force along the wave \[d/t^2\].
+    body_force: f64,
+    flow: Uncertain,
+    /// What flows against the wave in a stroke, over Jmax; missing of rows without it.
+    back: Option<Uncertain>,
+    efficiency: Option<Uncertain>,
+}
+
+/// One drive and filling, without and with a head.
 struct Drive {
     name: String,
     /// Numbers of the segments in the order in which they close, from the first of them on; empty of a wave.
@@ -24,18 +34,23 @@ struct Drive {
     duty: Option<f64>,
     /// Part of the tube that is squeezed, averaged over a period.
     squeeze: f64,
+    filling: f64,
     /// By descending body force: without head first.
-    flows: Vec<(f64, Uncertain, Option<Uncertain>)>,
+    flows: Vec<Flow>,
 }
 
 impl Drive {
-    fn flow(&self) -> Option<Uncertain> {
-        self.flows.iter().find(|it| it.0 == 0.0).map(|it| it.1)
+    fn free(&self) -> Option<&Flow> {
+        self.flows.iter().find(|it| it.body_force == 0.0)
     }
 
-    /// The largest head with its flow and its efficiency.
-    fn loaded(&self) -> Option<&(f64, Uncertain, Option<Uncertain>)> {
-        self.flows.last().filter(|it| it.0 < 0.0)
+    fn flow(&self) -> Option<Uncertain> {
+        self.free().map(|it| it.flow)
+    }
+
+    /// Against the largest head.
+    fn loaded(&self) -> Option<&Flow> {
+        self.flows.last().filter(|it| it.body_force < 0.0)
     }
 
     /// Whether the segments close one after the other along the wave.
@@ -54,50 +69,73 @@ impl Drive {
             },
             cell_of(self.duty, |duty| number(duty, 2)),
             number(self.squeeze, 3),
+            number(self.filling, 1),
             cell(self.flow()),
-            cell(loaded.map(|it| it.1)),
-            cell(loaded.and_then(|it| it.2)),
+            cell(self.free().and_then(|it| it.back)),
+            cell(loaded.map(|it| it.flow)),
+            cell(loaded.and_then(|it| it.back)),
+            cell(loaded.and_then(|it| it.efficiency)),
         ]
     }
 }
 
 /// The flows of some rows by descending body force.
-fn flows(rows: Vec<Row<'_>>) -> Vec<(f64, Uncertain, Option<Uncertain>)> {
+fn flows(rows: Vec<Row<'_>>) -> Vec<Flow> {
+    let back = |row: &Row<'_>| {
+        // Jmax = N c/L.
+        let most = row.number("grains") * row.strain_rate() / row.number("waves");
+        let (flow, error) = row.number_and_error("back_flow");
+        (flow / most, error / most)
+    };
     let by_force = grouped(rows, |row| row.number_or("body_force", 0.0));
-    by_force
-        .into_iter()
-        .rev()
-        .filter_map(|(force, rows)| {
-            let flow = mean(&rows, "flow_rate_ratio")?;
-            Some((force, flow, mean(&rows, "pumping_efficiency")))
+    let of = |(body_force, rows): (f64, Vec<Row<'_>>)| {
+        Some(Flow {
+            body_force,
+            flow: mean(&rows, "flow_rate_ratio")?,
+            back: mean_of(&rows, back),
+            efficiency: mean(&rows, "pumping_efficiency"),
         })
-        .collect()
+    };
+    by_force.into_iter().rev().filter_map(of).collect()
 }
 
-/// Number of segments, their order, and duty, rise and fall of a run.
-fn cycle<'a>(row: &Row<'a>) -> (f64, &'a str, [f64; 3]) {
-    let times = ["drive.duty", "drive.rise", "drive.fall"].map(|column| row.number(column));
-    (row.number("drive.segments"), row.text("drive.order"), times)
+/// Number of segments, their order, and duty, rise and fall of a run; its filling.
+fn cycle<'a>(row: &Row<'a>) -> (f64, &'a str, [f64; 4]) {
+    let [duty, rise, fall] =
+        ["drive.duty", "drive.rise", "drive.fall"].map(|column| row.number(column));
+    let numbers = [duty, rise, fall, row.volume_fraction()];
+    (
+        row.number("drive.segments"),
+        row.text("drive.order"),
+        numbers,
+    )
+}
+
+/// Filling and shape of a wave.
+fn shape<'a>(row: &Row<'a>) -> (f64, &'a str) {
+    (row.volume_fraction(), row.text("drive.waveform"))
 }
 
 fn segments(rows: Vec<Row<'_>>) -> Vec<Drive> {
     let drives = grouped(rows, cycle);
     drives
         .into_iter()
-        .map(|((segments, order, [duty, rise, fall]), rows)| Drive {
-            name: format!("{segments} segments"),
-            order: order.trim_matches(['[', ']']).replace(", ", " "),
-            number: Some(segments),
-            duty: Some(duty),
-            squeeze: duty + 0.5 * (rise + fall),
-            flows: flows(rows),
-        })
+        .map(
+            |((segments, order, [duty, rise, fall, filling]), rows)| Drive {
+                name: format!("{segments} segments"),
+                order: order.trim_matches(['[', ']']).replace(", ", " "),
+                number: Some(segments),
+                duty: Some(duty),
+                squeeze: duty + 0.5 * (rise + fall),
+                filling,
+                flows: flows(rows),
+            },
+        )
         .collect()
 }
 
 fn waves(rows: Vec<Row<'_>>) -> Vec<Drive> {
-    let waves = grouped(rows, |row| row.text("drive.waveform"));
-    let drive = |(name, rows): (&str, Vec<Row<'_>>)| Drive {
+    let drive = |((filling, name), rows): ((f64, &str), Vec<Row<'_>>)| Drive {
         name: name.to_owned(),
         order: String::new(),
         number: None,
@@ -107,17 +145,25 @@ fn waves(rows: Vec<Row<'_>>) -> Vec<Drive> {
             "sine" => 0.0,
             _ => 0.25,
         },
+        filling,
         flows: flows(rows),
     };
-    waves.into_iter().map(drive).collect()
+    let waves = grouped(rows, shape).into_iter();
+    waves.map(drive).collect()
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let of_segments = evidence.study(STUDIES[0])?.rows();
     let of_waves = evidence.study(STUDIES[1])?.rows();
     let statistics = behind(&of_segments, |row| row.number_or("body_force", 0.0));
-    let overlaps = of_segments.iter().map(|row| row.number("largest_overlap"));
-    let overlap = number(overlaps.fold(0.0, f64::max), 2);
+    let most = |column| {
+        of_segments
+            .iter()
+            .map(|row| row.number(column))
+            .fold(0.0, f64::max)
+    };
+    let overlap = number(most("largest_overlap"), 2);
+    let often = number(100.0 * most("pressed"), 0);
     let (segments, waves) = (segments(of_segments), waves(of_waves));
     let wave = waves.iter().find(|drive| drive.name == WAVE);
     let Some(wave) = wave else {
@@ -127,6 +173,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .iter()
         .filter(|drive| drive.number == Some(SEGMENTS))
         .filter(|drive| (drive.squeeze - wave.squeeze).abs() < SAME_STROKE)
+        .filter(|drive| drive.filling == wave.filling)
         .collect();
     let along = same.iter().find(|drive| drive.is_along()).copied();
     same.sort_by(|one, other| order_of(one).total_cmp(&order_of(other)));
@@ -134,32 +181,64 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
     };
     let mut draft = Draft::of(PROSE);
-    draft.weakness("pressed", values!(overlap));
+    draft.weakness("pressed", values!(overlap, often));
     for drive in [along, wave] {
         let name = &drive.name;
-        for (force, flow, efficiency) in &drive.flows {
-            let head = number(-force, 4);
-            draft.quantity("flow", values!(drive = name, head), *flow);
-            draft.quantity("efficiency", values!(drive = name, head), *efficiency);
+        for flow in &drive.flows {
+            let head = number(-flow.body_force, 3);
+            draft.quantity("flow", values!(drive = name, head), flow.flow);
+            draft.quantity("back", values!(drive = name, head), flow.back);
+            draft.quantity("efficiency", values!(drive = name, head), flow.efficiency);
         }
     }
-    let loaded = |drive: &Drive| cell(drive.loaded().map(|it| it.1));
-    let efficiency = |drive: &Drive| cell(drive.loaded().and_then(|it| it.2));
+    let efficiency = |drive: &Drive| drive.loaded().and_then(|it| it.efficiency);
+    let loaded = |drive: &Drive| cell(drive.loaded().map(|it| it.flow));
+    let back = |drive: &Drive| cell(drive.loaded().and_then(|it| it.back));
+    let is_fuller = |drive: &&Drive| drive.filling > wave.filling;
+    let fuller = segments
+        .iter()
+        .filter(is_fuller)
+        .find(|drive| drive.is_along());
+    let fuller_wave = waves
+        .iter()
+        .filter(is_fuller)
+        .find(|drive| drive.name == WAVE);
+    let other = fuller.zip(fuller_wave).map(|(one, wave)| {
+        PROSE.text(
+            "fuller",
+            values!(
+                filling = number(one.filling, 1),
+                flow = cell(one.flow()),
+                wave = cell(wave.flow()),
+                efficiency = cell(efficiency(one)),
+                wave_efficiency = cell(efficiency(wave))
+            ),
+        )
+    });
+    let times = efficiency(wave).zip(efficiency(along)).map(|(wave, own)| {
+        let times = wave.value / own.value;
+        let relative = (wave.error / wave.value).hypot(own.error / own.value);
+        Uncertain::normal(times, times * relative)
+    });
+    draft.quantity("times", &[], times);
     let summary = PROSE.text(
         "summary",
         values!(
             segments = number(SEGMENTS, 0),
             forward = cell(along.flow()),
             wave = cell(wave.flow()),
-            head = cell_of(along.loaded(), |it| number(-it.0, 4)),
+            head = cell_of(along.loaded(), |it| number(-it.body_force, 3)),
             loaded = loaded(along),
             wave_loaded = loaded(wave),
-            efficiency = efficiency(along),
-            wave_efficiency = efficiency(wave),
+            efficiency = cell(efficiency(along)),
+            wave_efficiency = cell(efficiency(wave)),
             best = best.order,
             most = cell(best.flow()),
             worst = worst.order,
-            least = cell(worst.flow())
+            least = cell(worst.flow()),
+            worst_back = back(worst),
+            back = back(along),
+            fuller = other.unwrap_or_default()
         ),
     );
     let rows = waves.iter().chain(&segments).map(Drive::cells);
@@ -188,7 +267,7 @@ fn orders(drives: &[&Drive], wave: &Drive) -> ChartPanel {
         )
     };
     let free = series("no head", &Drive::flow);
-    let loaded = series("head", &|drive| drive.loaded().map(|it| it.1));
+    let loaded = series("head", &|drive| drive.loaded().map(|it| it.flow));
     let title = format!("order: {}", names.join(", "));
     let panel = ChartPanel::new(&title, &label(Axis::FlowRateRatio));
     let panel = panel.with_all(numbered([free, loaded]));

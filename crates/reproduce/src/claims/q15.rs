@@ -54,6 +54,46 @@ impl Point {
     }
 }
 
+/// How long small outlets of one size flow before an arch stops them.
+struct Arches {
+    /// Clear outlet \[d\].
+    outlet: f64,
+    /// Runs that an arch stopped, and all.
+    stopped: (usize, usize),
+    /// Mass that all of them discharged \[m\].
+    discharged: f64,
+}
+
+impl Arches {
+    fn all_of<'a>(rows: impl Iterator<Item = Row<'a>>) -> Vec<Self> {
+        let of = |(width, rows): (f64, Vec<Row<'_>>)| {
+            let is_stopped = |row: &&Row<'_>| row.number("discharge_rate") == 0.0;
+            Self {
+                outlet: width - WALL_SPHERE,
+                stopped: (rows.iter().filter(is_stopped).count(), rows.len()),
+                discharged: rows.iter().map(|row| row.number("discharged")).sum(),
+            }
+        };
+        grouped(rows, Row::width).into_iter().map(of).collect()
+    }
+
+    /// Mean mass between two arches, M \[m\]: the likeliest of an exponential distribution of which the runs that still flow
+    /// are censored, the mass of all runs over the arches; its error is M over the root of their number. `None` without one.
+    fn mean_mass(&self) -> Option<Uncertain> {
+        let arches = self.stopped.0 as f64;
+        let mass = self.discharged / arches;
+        (arches > 0.0).then(|| Uncertain::normal(mass, mass / arches.sqrt()))
+    }
+
+    /// The mean mass in words; of outlets without an arch what it exceeds at a chance of e^{-3}, 5 %.
+    fn in_words(&self) -> String {
+        match self.mean_mass() {
+            Some(mass) => mass.to_string(),
+            None => format!("> {}", number(self.discharged / 3.0, 0)),
+        }
+    }
+}
+
 /// Beverloo's law W = C (D - k)^n, fitted to some outlets.
 struct Beverloo {
     /// k with n = 5/2.
@@ -126,6 +166,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let outlet = |row: &Row<'_>| row.width() - WALL_SPHERE;
     let rows = outlets?.rows();
     let statistics = behind(&rows, Row::width);
+    let small = Arches::all_of(rows.iter().copied().filter(|row| outlet(row) < OPEN));
     let outlets = Point::all_of(rows, outlet);
     let head_rows = heads?.rows();
     // The clear diameter of the tube above the hopper.
@@ -168,10 +209,29 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     draft.table("heads", &[], heads.iter().map(row));
     draft.table("feeds", &[], feeds.iter().map(row));
-    let widest = outlets.iter().rev().find(|point| point.blocked.0 > 0);
-    let arches = match widest {
-        Some(point) => PROSE.text("arches", values!(outlet = number(point.at, 1))),
-        None => PROSE.text("no arches", &[]),
+    draft.table(
+        "arches",
+        &[],
+        small.iter().map(|it| {
+            let stopped = format!("{}/{}", it.stopped.0, it.stopped.1);
+            vec![number(it.outlet, 2), stopped, it.in_words()]
+        }),
+    );
+    let masses = small.iter().map(|it| {
+        draft.quantity(
+            "mass",
+            values!(outlet = number(it.outlet, 2)),
+            it.mean_mass(),
+        );
+        PROSE.text(
+            "mass",
+            values!(mass = it.in_words(), outlet = number(it.outlet, 2)),
+        )
+    });
+    let masses = masses.collect::<Vec<_>>().join(", ");
+    let arches = match small.iter().any(|it| it.stopped.0 > 0) {
+        true => PROSE.text("arches", values!(masses)),
+        false => PROSE.text("no arches", &[]),
     };
     let head = fillings(&heads, bore);
     let feed = change(&feeds);
@@ -201,16 +261,43 @@ const ALIKE: f64 = 0.05;
 fn fillings(heads: &[Point], bore: f64) -> Option<String> {
     let (low, full) = (heads.first()?, heads.last()?);
     let off = |point: &Point| 100.0 * (1.0 - point.rate.value / full.rate.value);
-    let high = heads.iter().filter(|point| point.at >= bore);
-    let spread = high.map(|point| off(point).abs()).fold(0.0, f64::max);
+    let high: Vec<Uncertain> = heads
+        .iter()
+        .filter(|point| point.at >= bore)
+        .map(|point| point.rate)
+        .collect();
+    let weight = |rate: &Uncertain| 1.0 / (rate.error * rate.error);
+    let weights: f64 = high.iter().map(weight).sum();
+    let mean = high
+        .iter()
+        .map(|rate| weight(rate) * rate.value)
+        .sum::<f64>()
+        / weights;
+    let chi_squared: f64 = high
+        .iter()
+        .map(|rate| rate.deviations_from(mean).powi(2))
+        .sum();
+    let free = high.len().checked_sub(1)?;
+    // Mean and standard deviation of chi^2 are its degrees of freedom and the root of twice them.
+    let most = free as f64 + AGREES_WITHIN * (2.0 * free as f64).sqrt();
+    let off_mean = high.iter().map(|rate| (rate.value - mean).abs());
+    let farthest = off_mean.fold(0.0, f64::max);
+    let less = difference(&low.rate, &full.rate);
     Some(PROSE.text(
-        "head",
+        if chi_squared <= most {
+            "head"
+        } else {
+            "differing"
+        },
         values!(
             bore = number(bore, 0),
             full = number(full.at, 0),
-            spread = number(spread, 0),
+            spread = number(100.0 * farthest / mean, 0),
+            chi = number(chi_squared, 1),
+            free,
             low = number(low.at, 0),
-            less = number(off(low), 0)
+            less = number(off(low), 0),
+            error = number(100.0 * less.error / full.rate.value, 0)
         ),
     ))
 }

@@ -14,6 +14,50 @@ pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
     mean_with_error(&series).map_or(f64::NAN, |estimate| estimate.error)
 }
 
+/// Late mean of J/Jmax and its error; NaN where the wave stands all the time.
+///
+/// Where the wave pauses there is no Jmax: then it is the mean of J over that of Jmax = N c/L, c being the wavelengths run
+/// in the time of all samples but the first. What flows while the wave stands counts.
+pub(super) fn flow_rate_ratio(late: &[Sample], waves: f64) -> (f64, f64) {
+    let ratios = super::ratios_of(late);
+    let pauses = ratios.iter().any(|ratio| ratio.is_nan());
+    let run = |part: &[Sample]| {
+        let (first, last) = (part.first()?, part.last()?);
+        let run = last.period - first.period;
+        (run > 0.0).then(|| waves * (last.time - first.time) / run)
+    };
+    match run(late).filter(|_| pauses) {
+        Some(per_wave) => {
+            let rest = &late[1..];
+            let scale = per_wave / mean_of(rest, |sample| sample.inside);
+            let flows = || rest.iter().map(|sample| scale * sample.flow_rate);
+            (
+                mean_of(rest, |sample| scale * sample.flow_rate),
+                error_of(flows()),
+            )
+        }
+        None => match mean_with_error(&ratios) {
+            Ok(estimate) => (estimate.mean, estimate.error),
+            Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
+        },
+    }
+}
+
+/// Late mean of what flows against the wave, over J: the mean of -J where J < 0, each over the time of a sample, \[1/t\].
+pub(super) fn back_flow(late: &[Sample]) -> (f64, f64) {
+    let back = |sample: &Sample| (-sample.flow_rate).max(0.0);
+    (mean_of(late, back), error_of(late.iter().map(back)))
+}
+
+/// Overlap from which on a grain counts as pressed \[d\]: below a tenth, soft grains pass for solid ones.
+const PRESSED: f64 = 0.1;
+
+/// Part of the late samples at which a contact of a grain overlaps by more than a tenth of d.
+pub(super) fn pressed(late: &[Sample]) -> f64 {
+    let is_pressed = |sample: &&Sample| sample.largest_overlap > PRESSED;
+    late.iter().filter(is_pressed).count() as f64 / late.len() as f64
+}
+
 /// Pumping against a body force: late means, each power with its error from block averages. Units: d, m, t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pumping {

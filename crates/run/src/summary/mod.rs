@@ -7,7 +7,6 @@ mod local_flow;
 mod table;
 mod written;
 
-use peristalsis_analysis::mean_with_error;
 use peristalsis_configuration::{Configuration, Units};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
@@ -51,7 +50,7 @@ pub struct Summary {
     pub status: Status,
     /// Why it diverged, where it did.
     pub message: Option<String>,
-    /// Late mean of J/Jmax of the grains inside, its error from block averages.
+    /// Late mean of J/Jmax of the grains inside, its error from block averages; with pauses, of J over that of Jmax.
     pub flow_rate_ratio: (f64, f64),
     /// tau \[t\]; `None` where the run ended before a transition.
     pub transition_time: Option<f64>,
@@ -126,10 +125,7 @@ impl Summary {
         let late_intervals = late.len() as u64 * recorder.intervals();
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let of_period = (samples_per_period / recorder.intervals()).max(1) as usize;
-        let flow_rate_ratio = match mean_with_error(&ratios_of(late)) {
-            Ok(estimate) => (estimate.mean, estimate.error),
-            Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
-        };
+        let flow_rate_ratio = late::flow_rate_ratio(late, configuration.tube.waves.into());
         let profile = late_profile(run);
         let part = |part| recorder.profile().late_part(fraction, part);
         let whole = part(WavePart::Whole);
@@ -183,6 +179,16 @@ impl Summary {
     /// Late mean of J \[1/t\].
     pub fn flow_rate(&self) -> f64 {
         self.mean(|sample| sample.flow_rate)
+    }
+
+    /// Late mean of -J where J < 0, and its error \[1/t\].
+    pub fn back_flow(&self) -> (f64, f64) {
+        late::back_flow(&self.late)
+    }
+
+    /// Part of the late samples at which a contact of a grain overlaps by more than a tenth of d.
+    pub fn pressed(&self) -> f64 {
+        late::pressed(&self.late)
     }
 
     /// Late mean power that wall or drive put in \[m d^2/t^3\].

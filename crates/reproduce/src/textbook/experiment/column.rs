@@ -126,11 +126,7 @@ impl Column {
         };
         let frequency = SINKING / length;
         let [begins, sinks] = STARTS;
-        let knots = vec![
-            (begins, 0.0),
-            (sinks, frequency),
-            (1e9, frequency),
-        ];
+        let knots = vec![(begins, 0.0), (sinks, frequency), (1e9, frequency)];
         let wall = PrescribedWall::new(
             lattice,
             radius,
