@@ -168,6 +168,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("segments"),
     study!("segments-wave"),
     study!("silo"),
+    study!("silo-arches"),
     study!("silo-head"),
     study!("silo-feed"),
 ];

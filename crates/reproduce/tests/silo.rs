@@ -96,7 +96,7 @@ fn the_law_of_a_silo_is_found_again() {
         let mass = |outlet: f64| 30.0 + 100.0 * rate(outlet) * 2.01;
         let found = value(&finding, "outlet 3.00");
         assert!((found - mass(3.0)).abs() < 0.5, "{found}");
-        assert_says(&finding.summary, "leave one of 3.00");
+        assert_says(&finding.summary, "at 3.00 *d*");
         assert_says(&finding.summary, "agree within errors");
         assert_says(&finding.summary, "8 *d* gives 38 ");
         assert_says(&finding.summary, "rate is 0.700 ± 0.004: a drop");

@@ -64,6 +64,7 @@ class Keywords(TypedDict, total=False):
     contact_normal_damping: float
     contact_normal_stiffness: float
     contact_poisson_ratio: float
+    contact_pull_off: Literal["displacement", "force"]
     contact_range: float
     """wall.contact_range. Wall spheres whose places in the straight tube are farther apart than this repel on
     contact, so that opposite sides of a throat do not pass through each other; stress control. (Unit: d.)"""
@@ -180,6 +181,7 @@ class Keywords(TypedDict, total=False):
     end, as soon as there is place. Default: the whole tube. (Unit: d.)"""
     initial_axial_velocity: float
     initial_state: Literal["rest", "settled", "jammed", "placed"]
+    initial_temperature: float
     inlet_feed_rate: float
     """inlet.feed_rate. Grains put in per time, as far as there is place for them. Default: as many as there is
     place for. (Unit: t^-1.)"""
@@ -252,6 +254,8 @@ class Keywords(TypedDict, total=False):
     profile_bins: int
     """observe.profile_bins. Bins of the profiles over one wavelength. The largest pressure on the wall is that of a
     bin: it grows with their number. (A pure number.)"""
+    pull_off: Literal["displacement", "force"]
+    """contact.pull_off. Where the neck of a JKR contact breaks."""
     radial: float
     """wall.keep.radial. Stiffness of the radial tether of a wall sphere to its place. (Unit: m t^-2.)"""
     radii: Sequence[float]
@@ -349,6 +353,9 @@ class Keywords(TypedDict, total=False):
     tangential_stiffness: float
     """contact.tangential_stiffness. Tangential stiffness k_t, f_t = -k_t u - eta_t v_t below the Coulomb limit.
     Without effect while both frictions are 0. (Unit: m t^-2.)"""
+    temperature: float
+    """initial.temperature. Granular temperature at t = 0: besides the velocity along the wave every component of a
+    grain's velocity is drawn from a normal distribution of variance temperature/mass. (Unit: m d^2 t^-2.)"""
     time_step: float
     """run.time_step. Largest time step allowed. The step is chosen so that a whole number of steps lies between two
     samples. (Unit: t.)"""
@@ -551,6 +558,12 @@ class SiSummary(TypedDict):
     """contact_force_99 in SI; missing without the table units [N]"""
     contact_force_largest_n: float | None
     """contact_force_largest in SI; missing without the table units [N]"""
+    wall_torque_n_m: float | None
+    """wall_torque in SI; missing without the table units [N m]"""
+    wear_power_w: float | None
+    """wear_power in SI; missing without the table units [W]"""
+    wall_wear_w_per_m2: float | None
+    """wall_wear in SI; missing without the table units [W/m^2]"""
     transition_time_s: float | None
     """transition_time in SI [s]"""
     residence_time_s: float | None
@@ -589,7 +602,7 @@ class Summary(TypedDict):
     transition_threshold: float
     """J/Jmax whose crossing counts as the transition"""
     flow_rate_ratio: float
-    """late mean of J/Jmax, grains inside"""
+    """late mean of J/Jmax, grains inside; of J over that of Jmax where the wave pauses"""
     flow_rate_ratio_error: float
     """its standard error"""
     flow_rate_ratio_drift: float
@@ -671,6 +684,46 @@ class Summary(TypedDict):
     """its standard error [m d/t^2]"""
     contact_force_largest: float | None
     """largest normal force at a contact of a grain, at the late moments that were looked at [m d/t^2]"""
+    wall_torque: float | None
+    """wall_power over 2 pi f, f the frequency of the wave: torque of a shaft that makes one wave a turn; missing
+    for a static wave [m d^2/t^2]"""
+    wall_torque_error: float | None
+    """its standard error [m d^2/t^2]"""
+    wear_power: float | None
+    """late mean power that grains lose where they slide on the wall; missing without friction [m d^2/t^3]"""
+    wear_power_error: float | None
+    """its standard error [m d^2/t^3]"""
+    wall_wear: float | None
+    """the same per area of the wall [m/t^3]"""
+    wall_wear_error: float | None
+    """its standard error [m/t^3]"""
+    axial_mixing: float | None
+    """late mean of Lacey's index of the halves that began in front and behind: 0 apart, 1 at random; missing in an
+    open tube"""
+    axial_mixing_error: float | None
+    """its standard error"""
+    radial_mixing: float | None
+    """the same of the halves that began near the axis and near the wall"""
+    radial_mixing_error: float | None
+    """its standard error"""
+    axial_mixing_time: float | None
+    """end of the first period in which axial mixing has come to 1/2; missing where it has not [t]"""
+    radial_mixing_time: float | None
+    """the same of radial mixing [t]"""
+    radial_segregation: float | None
+    """late mean correlation of diameter and radial place: positive where large grains are outside; missing for one
+    size"""
+    radial_segregation_error: float | None
+    """its standard error"""
+    height_segregation: float | None
+    """late mean correlation of diameter and height: positive where large grains are on top; missing without gravity
+    across"""
+    height_segregation_error: float | None
+    """its standard error"""
+    belly_segregation: float | None
+    """late mean correlation of diameter and the tube's radius: positive where large grains are in the bellies"""
+    belly_segregation_error: float | None
+    """its standard error"""
     residence_time: float | None
     """late mean time of a grain through the tube, N/J; missing where the flow is not along the wave [t]"""
     residence_time_error: float | None
@@ -681,6 +734,13 @@ class Summary(TypedDict):
     """its standard error [d^2/t]"""
     late_periods: float
     """periods that late means are over"""
+    back_flow: float
+    """late mean of -J where J < 0, each J the mean over the interval of a sample: what flows back in a stroke
+    [1/t]"""
+    back_flow_error: float
+    """its standard error [1/t]"""
+    pressed: float
+    """part of the late samples at which a grain overlaps another or the wall by more than 0.1 d"""
     wall_spheres: int
     """spheres of the wall"""
     grain_steps_per_second: float

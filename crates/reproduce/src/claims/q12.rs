@@ -287,12 +287,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let panels = predictions.iter().map(|one| one.panel(&groups));
     let chart = grid(3, panels).share_y().legend(LegendPlace::Below);
     draft.chart("predictions", &[], chart)?;
-    let walls = WALLS.iter().map(|wall| {
-        let density = wall.lattice.density(RADIUS, WAVELENGTH);
-        format!("{} has {}", wall.name(), number(density, 2))
+    let nearest = WALLS.iter().map(|wall| {
+        let ours = wall.lattice.density(RADIUS, WAVELENGTH);
+        ((ours - density.value).abs(), wall.name(), number(ours, 2))
     });
-    let walls = walls.collect::<Vec<_>>().join(", ");
-    let summary = PROSE.text("summary", values!(density, told = words.join("; "), walls));
+    let nearest = nearest.min_by(|one, other| one.0.total_cmp(&other.0));
+    let nearest = nearest.map_or_else(String::new, |(_, wall, ours)| format!("{wall} has {ours}"));
+    let summary = PROSE.text(
+        "summary",
+        values!(density, told = words.join("; "), nearest),
+    );
     let verdict = Verdict::answered_if(tests.len() >= LEAST_TESTS);
     Ok(draft.concluded(verdict, summary, statistics, &Q12_NEEDED))
 }

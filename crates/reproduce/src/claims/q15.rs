@@ -6,8 +6,8 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q15.md"));
 
-/// Against the outlet, against the filling, against the feed.
-const STUDIES: &[&str] = &["silo", "silo-head", "silo-feed"];
+/// Against the outlet, wide and small, against the filling, against the feed.
+const STUDIES: &[&str] = &["silo", "silo-arches", "silo-head", "silo-feed"];
 
 pub(super) const CLAIM: Claim = Claim::new("Q15", PROSE, STUDIES, examine);
 
@@ -162,9 +162,10 @@ impl Beverloo {
 const OFFSETS: usize = 400;
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let [outlets, heads, feeds] = [0, 1, 2].map(|place| evidence.study(STUDIES[place]));
+    let [outlets, small, heads, feeds] = [0, 1, 2, 3].map(|place| evidence.study(STUDIES[place]));
     let outlet = |row: &Row<'_>| row.width() - WALL_SPHERE;
-    let rows = outlets?.rows();
+    let mut rows = outlets?.rows();
+    rows.extend(small?.rows());
     let statistics = behind(&rows, Row::width);
     let small = Arches::all_of(rows.iter().copied().filter(|row| outlet(row) < OPEN));
     let outlets = Point::all_of(rows, outlet);
@@ -193,7 +194,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             let ratio = point.rate.value / law.rate(point.at);
             let told = (point.rate.value > 0.0 && law.rate(point.at) > 0.0).then_some(ratio);
             vec![
-                number(point.at, 1),
+                number(point.at, 2),
                 point.rate.to_string(),
                 cell_of(told, |it| number(it, 2)),
                 blocked(point),
@@ -217,12 +218,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             vec![number(it.outlet, 2), stopped, it.in_words()]
         }),
     );
-    let masses = small.iter().map(|it| {
-        draft.quantity(
-            "mass",
-            values!(outlet = number(it.outlet, 2)),
-            it.mean_mass(),
-        );
+    for it in &small {
+        let outlet = number(it.outlet, 2);
+        draft.quantity("mass", values!(outlet), it.mean_mass());
+    }
+    // Of the outlets without an arch the smallest says most.
+    let told = 1 + small.iter().take_while(|it| it.stopped.0 > 0).count();
+    let masses = small.iter().take(told).map(|it| {
         PROSE.text(
             "mass",
             values!(mass = it.in_words(), outlet = number(it.outlet, 2)),

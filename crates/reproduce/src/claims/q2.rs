@@ -192,7 +192,7 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
         .filter_map(|((arrangement, lattice, waves), rows)| {
             let mut name = wall_name(*lattice, arrangement);
             if *waves != WAVES {
-                name.push_str(&PROSE.text("so long", values!(waves)));
+                name = PROSE.text("so long", values!(name, waves));
             }
             Candidate::of(name, rows)
         });
@@ -235,6 +235,13 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
         let [slope, power] = [cell(one.slope), cell(one.power)];
         draft.paragraph("waves", values!(slope, power));
     }
-    let rows = found.iter().chain(&by_length).map(Candidate::row);
+    let (told, leaking): (Vec<_>, Vec<_>) = found
+        .iter()
+        .partition(|one| one.slope.is_some() || one.power.is_some());
+    if !leaking.is_empty() {
+        let names: Vec<&str> = leaking.iter().map(|one| &*one.name).collect();
+        draft.paragraph("leaking", values!(walls = names.join(", ")));
+    }
+    let rows = told.into_iter().chain(&by_length).map(Candidate::row);
     draft.table("candidates", &[], rows);
 }
