@@ -327,7 +327,7 @@ pub(crate) struct ValidateArguments {
     /// Only these cases, such as normal-impact,haff.
     #[arg(long, value_name = "CASES", value_delimiter = ',', value_parser = cases(), hide_possible_values = true)]
     pub(crate) only: Vec<String>,
-    /// Fewer points and replicates: takes about twenty seconds.
+    /// Fewer points and replicates: takes less than a minute.
     #[arg(long)]
     pub(crate) quick: bool,
     /// Folder for the results; older ones in it are replaced.

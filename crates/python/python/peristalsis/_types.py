@@ -753,6 +753,8 @@ class Summary(TypedDict):
     """revision of its source"""
     pumping: PumpingSummary | None
     """Pumping against a body force; `None` without one."""
+    open: OpenSummary | None
+    """What passes through an open tube; `None` of a periodic one."""
     throat: ThroatSummary
     """The fifth of the wavelength where the tube is narrowest."""
     belly: BellySummary
