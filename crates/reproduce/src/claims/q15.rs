@@ -285,13 +285,14 @@ fn fillings(heads: &[Point], bore: f64) -> Option<String> {
     let off_mean = high.iter().map(|rate| (rate.value - mean).abs());
     let farthest = off_mean.fold(0.0, f64::max);
     let less = difference(&low.rate, &full.rate);
+    let outcome = match chi_squared <= most {
+        true => PROSE.text("agree", &[]),
+        false => PROSE.text("differ", &[]),
+    };
     Some(PROSE.text(
-        if chi_squared <= most {
-            "head"
-        } else {
-            "differing"
-        },
+        "head",
         values!(
+            outcome,
             bore = number(bore, 0),
             full = number(full.at, 0),
             spread = number(100.0 * farthest / mean, 0),
