@@ -7,7 +7,8 @@ use crate::view::View;
 /// Correlations of the grains' diameters with where they are: from -1 to 1, 0 without order, with a spread of
 /// (N - 1)^(-1/2) where N grains lie at random.
 ///
-/// r = sum (d - <d>) (x - <x>)/(sum (d - <d>)^2 sum (x - <x>)^2)^(1/2). There is none where all diameters or all places are the same.
+/// r = sum (d - d_m) (x - x_m)/(sum (d - d_m)^2 sum (x - x_m)^2)^(1/2), d_m and x_m the means. There is none where all diameters or
+/// all places are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Segregation {
     /// With the radial place r/(R - (d_w + d)/2), the distance from the axis over the largest that a grain of its size can have:
