@@ -21,9 +21,13 @@ pub(crate) fn edit_distance(one: &str, other: &str) -> usize {
     last[other.len()]
 }
 
-/// Edits that are still taken for a slip of the pen in a word.
-fn tolerance(word: &str) -> usize {
-    (word.chars().count() / 3).clamp(1, 3)
+/// Edits that are still taken for a slip of the pen in a word; of a key in another table than the one written fewer.
+fn tolerance(word: &str, is_in_other_table: bool) -> usize {
+    let letters = word.chars().count();
+    match is_in_other_table {
+        true => letters / 6,
+        false => (letters / 3).clamp(1, 3),
+    }
 }
 
 /// A word no user meant: longer than any name by far. Distances to it would only cost time.
@@ -51,7 +55,9 @@ pub(crate) fn nearest<'a>(path: &str, known: impl IntoIterator<Item = &'a str>) 
         };
         (distance, is_elsewhere, candidate)
     });
-    let near = distances.filter(|(distance, ..)| *distance <= tolerance(name));
+    let near = distances.filter(|&(distance, is_elsewhere, _)| {
+        distance <= tolerance(name, is_elsewhere && !table.is_empty())
+    });
     let nearest = near.min_by_key(|(distance, is_elsewhere, _)| (*distance, *is_elsewhere));
     nearest.map(|(.., candidate)| candidate)
 }
@@ -75,6 +81,7 @@ mod tests {
             "tube.waves",
             "wall.drag",
             "drive.strain_rate",
+            "run.seed",
         ];
         for (path, expected) in [
             ("drive.widht", Some("drive.width")),
@@ -82,6 +89,8 @@ mod tests {
             ("tube.strain_rat", Some("drive.strain_rate")),
             ("drive.rate", Some("drive.strain_rate")),
             ("tube.colour", None),
+            ("drive.feed", None),
+            ("feed", Some("run.seed")),
         ] {
             assert_eq!(nearest(path, known), expected, "{path}");
         }

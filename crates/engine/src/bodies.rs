@@ -36,11 +36,11 @@ pub struct Bodies {
 pub struct Sphere {
     /// Centre \[d\].
     pub position: DVec3,
-    /// \[d/t\]
+    /// Velocity \[d/t\].
     pub velocity: DVec3,
-    /// \[1/t\]
+    /// Angular velocity \[1/t\].
     pub angular_velocity: DVec3,
-    /// \[d\]
+    /// Diameter \[d\].
     pub diameter: f64,
 }
 

@@ -22,7 +22,7 @@ pub mod wall;
 mod wall_contacts;
 
 pub use bodies::{Bodies, Sphere};
-pub use ends::{Ends, OpenEnds, Passages, Passed, Residence, STEPS_PER_LOOK};
+pub use ends::{Ends, OpenEnds, Passages, Passed, STEPS_PER_LOOK, TransitTimes};
 pub use error::EngineError;
 pub use fast::machine::Instructions;
 pub use fast::threads::{processors, threads_that_pay};

@@ -235,7 +235,7 @@ impl Simulation {
         })
     }
 
-    /// Computes with the given instructions (or the widest that the machine has, if it lacks them) and so many threads
+    /// Computes with the given instructions (or the widest that the machine has, if it lacks them) and number of threads
     /// from now on, where a fast kernel runs; neither changes a bit of the results.
     ///
     /// # Errors
@@ -255,12 +255,12 @@ impl Simulation {
         Ok(())
     }
 
-    /// Whether several threads serve it: not where the reference kernel computes.
+    /// Whether several threads can compute it; the reference kernel uses one.
     pub fn takes_threads(&self) -> bool {
         self.parameters.kernel == Kernel::Fast
     }
 
-    /// How many threads pay for it on a machine with so many processors.
+    /// Number of threads that pay on a machine with `processors` processors.
     pub fn threads_that_pay(&self, processors: usize) -> usize {
         threads_that_pay(self.parameters.kernel, self.bodies.number(), processors)
     }
@@ -412,7 +412,7 @@ impl Simulation {
         self.snapshot_view().into_owned()
     }
 
-    /// The same, to be written down at once.
+    /// As [`Simulation::snapshot`], without a copy: to be written down at once.
     pub fn snapshot_view(&self) -> SnapshotView<'_> {
         let ([pair_histories, wall_histories], general_histories) = match &self.memory {
             Memory::Smooth(_) => Default::default(),

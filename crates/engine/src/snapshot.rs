@@ -36,7 +36,7 @@ pub struct Snapshot {
     pub pair_histories: Vec<(u32, u32, TangentialHistory)>,
     /// (grain, wall sphere, history) of contacts with a prescribed wall, in order of the grains.
     pub wall_histories: Vec<(u32, u32, TangentialHistory)>,
-    /// Both, where there is rolling resistance or cohesion.
+    /// Histories of both kinds of contacts, where there is rolling resistance or cohesion.
     pub general_histories: Remembered<GeneralHistory>,
     /// The order of the grains along the tube, where the kernel keeps one.
     pub sorting: Option<Sorting>,
@@ -60,7 +60,7 @@ pub struct SnapshotView<'a> {
 }
 
 impl SnapshotView<'_> {
-    /// A snapshot of its own.
+    /// A copy that does not borrow from the simulation.
     pub fn into_owned(self) -> Snapshot {
         Snapshot {
             step: self.step,

@@ -23,8 +23,8 @@ pub struct WallContact {
     pub normal_force: DVec3,
     /// f_t, friction.
     pub tangential_force: DVec3,
-    /// Power that sliding takes, the loss of the step to come as far as the velocities now tell: f_t times the speed at which
-    /// the slider moves, without what the tangential spring takes up and gives back \[m d^2/t^3\].
+    /// Power lost to sliding: f_t times the speed of the slider, without what the tangential spring stores and gives back
+    /// \[m d^2/t^3\]. It is the loss of the coming step, from the velocities now.
     pub sliding_power: f64,
 }
 

@@ -105,8 +105,8 @@ fn every_grain_is_counted_once_and_energy_is_accounted_for() {
             let passages = simulation.ends().unwrap().passages();
             assert!(passages.discharged.grains > 100, "{passages:?}");
             assert_eq!((passages.returned.grains, passages.leaked.grains), (0, 0));
-            let residence = simulation.ends().unwrap().residence();
-            assert!(residence.number() > 0 && residence.number() <= passages.discharged.grains);
+            let times = simulation.ends().unwrap().transit_times();
+            assert!(times.number() > 0 && times.number() <= passages.discharged.grains);
             assert!(
                 simulation.energy_residual() < 2e-3,
                 "{}",

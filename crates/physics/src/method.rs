@@ -15,7 +15,7 @@ pub enum InitialState {
     Settled,
     /// Gathered in the bellies and moving with the wave: J = Jmax.
     Jammed,
-    /// Where a caller of the library has put them: no file says where, and a checkpoint alone repeats such a run.
+    /// Where a caller of the library has put them. No file says where: only a checkpoint repeats such a run.
     Placed,
 }
 

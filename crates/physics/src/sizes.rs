@@ -65,7 +65,7 @@ impl Sizes {
         Some(Self::Classes(classes))
     }
 
-    /// The diameter below which this part of the grains lies, 0 <= part < 1 \[d\]: of a uniform random number a random
+    /// The diameter below which the fraction `part` of the grains lies, 0 <= part < 1 \[d\]: of a uniform random number a random
     /// diameter.
     pub fn diameter(&self, part: f64) -> f64 {
         match self {
@@ -127,7 +127,7 @@ impl Sizes {
         }
     }
 
-    /// The part by number of the larger of two sizes that has a part `volume` of the volume.
+    /// Fraction by number of the larger of two sizes, where it makes up the fraction `volume` by volume.
     pub fn number_of_volume([small, large]: [f64; 2], volume: f64) -> f64 {
         let number = |diameter: f64, volume: f64| volume / (diameter * diameter * diameter);
         let (large, small) = (number(large, volume), number(small, 1.0 - volume));

@@ -67,9 +67,9 @@ pub fn transit_table(run: &Run) -> Result<Option<Table>, FormatError> {
     let Some(ends) = run.simulation().ends() else {
         return Ok(None);
     };
-    let residence = ends.residence();
-    let (width, bins) = residence.distribution();
-    let all = residence.number() as f64;
+    let times = ends.transit_times();
+    let (width, bins) = times.distribution();
+    let all = times.number() as f64;
     let bin = |(place, &grains): (usize, &u64)| TransitBin {
         from: place as f64 * width,
         to: (place + 1) as f64 * width,

@@ -1,7 +1,7 @@
 //! `peristalsis design`
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -13,7 +13,7 @@ use crate::arguments::ConfigurationArguments;
 use crate::commands::check::in_words as estimate_in_words;
 use crate::commands::schema::{SchemaArguments, show};
 use crate::commands::{print_report, rounded, say_if_replaced, significant};
-use crate::failure::Failure;
+use crate::failure::{Failure, say};
 use crate::sources::{configuration, locate, name_and_text};
 use crate::stop::Stop;
 
@@ -56,21 +56,24 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
         return Err(no_design());
     }
     if let Some(path) = &arguments.write {
-        say_if_replaced(path);
-        let text = text.unwrap_or_else(|| configuration.to_toml());
-        fs::write(path, text).map_err(Failure::write(path))?;
+        write(path, &text.unwrap_or_else(|| configuration.to_toml()))?;
     }
     let estimate = estimate(&configuration, None).map_err(|error| locate(error, sources))?;
     let Some(design) = Design::of(&configuration, estimate) else {
         return Err(no_design());
     };
     if let Some(path) = &arguments.html {
-        say_if_replaced(path);
         let name = crate::sources::name(sources);
-        let page = page(&design, &name, &in_words(&design));
-        fs::write(path, page).map_err(Failure::write(path))?;
+        write(path, &page(&design, &name, &in_words(&design)))?;
     }
     print_report(arguments.json, &design, || in_words(&design))
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    say_if_replaced(path);
+    fs::write(path, text).map_err(Failure::write(path))?;
+    say(&format!("written to {}", path.display()));
+    Ok(())
 }
 
 fn no_design() -> Failure {

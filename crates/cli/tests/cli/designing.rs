@@ -10,9 +10,9 @@ const HOSE: &str = "[grain]\nmaterial = \"sand\"\ndiameter = 2e-3\n\n\
 fn a_design_is_told_written_and_computed() {
     let place = Place::new();
     place.write("hose.toml", HOSE);
-    let told = place
-        .does("design hose.toml --write computed.toml --html hose.html")
-        .stdout;
+    let outcome = place.does("design hose.toml --write computed.toml --html hose.html");
+    assert!(outcome.stderr.contains("written to computed.toml"));
+    let told = outcome.stdout;
     for words in [
         "clear bore over grain diameter",
         "regime            ",

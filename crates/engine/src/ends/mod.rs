@@ -5,7 +5,7 @@
 //! All of it is done at fixed steps, with random numbers of that step, so that no bit depends on how a run is divided.
 
 mod opening;
-mod residence;
+mod transit_times;
 
 use glam::DVec3;
 use peristalsis_physics::ends::{Inlet, gap};
@@ -13,7 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use self::opening::Opening;
-pub use self::residence::Residence;
+pub use self::transit_times::TransitTimes;
 use crate::bodies::Bodies;
 use crate::wall::Wall;
 
@@ -91,7 +91,7 @@ pub struct Ends {
     /// Grains that wait outside, the next one first.
     queue: Vec<u32>,
     passages: Passages,
-    residence: Residence,
+    transit_times: TransitTimes,
 }
 
 /// What a look at the ends has changed.
@@ -130,7 +130,7 @@ impl Ends {
             stations: vec![station; bodies.grains],
             queue: Vec::new(),
             passages: Passages::default(),
-            residence: Residence::new(STEPS_PER_LOOK as f64 * time_step),
+            transit_times: TransitTimes::new(STEPS_PER_LOOK as f64 * time_step),
         };
         let length = ends.length(wall);
         for grain in 0..bodies.grains {
@@ -158,7 +158,7 @@ impl Ends {
         self.stations.len() == grains
             && self.queue.len() == waiting
             && self.queue.iter().all(waits)
-            && self.residence.fits()
+            && self.transit_times.fits()
     }
 
     /// Length of the tube between its ends \[d\].
@@ -181,12 +181,12 @@ impl Ends {
         &self.passages
     }
 
-    /// How long the grains that left through the outlet had been in the tube, counted for those that the inlet put in.
-    pub fn residence(&self) -> &Residence {
-        &self.residence
+    /// Transit times of the grains that the inlet put in and that left through the outlet.
+    pub fn transit_times(&self) -> &TransitTimes {
+        &self.transit_times
     }
 
-    /// What being put elsewhere has added to the z of a grain, turns counted \[d\].
+    /// What being put in again has added to a grain's z, turns counted \[d\].
     pub fn carried(&self, grain: usize) -> f64 {
         self.stations[grain].carried
     }
@@ -236,7 +236,7 @@ impl Ends {
         } else if at_outlet {
             passages.discharged.add(mass);
             if let Some(entered) = self.stations[grain].entered {
-                self.residence.add(time - entered);
+                self.transit_times.add(time - entered);
             }
         } else {
             passages.returned.add(mass);

@@ -1,13 +1,13 @@
-//! How long grains stay in an open tube.
+//! How long grains take through an open tube.
 
 /// Most bins of the distribution.
 const BINS: usize = 256;
 
-/// Residence times: number, mean and variance, and how they are distributed over bins of equal width.
+/// Transit times: number, mean and variance, and how they are distributed over bins of equal width.
 ///
 /// The bins are few whatever the run: where a time lies beyond them, every two become one, twice as wide.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Residence {
+pub struct TransitTimes {
     number: u64,
     mean: f64,
     /// Sum of squared differences from the mean \[t^2\].
@@ -17,7 +17,7 @@ pub struct Residence {
     bins: Vec<u64>,
 }
 
-impl Residence {
+impl TransitTimes {
     /// None yet; bins begin with this width \[t\].
     pub(crate) fn new(width: f64) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl Residence {
         }
     }
 
-    /// Whether it can be one of [`Residence::new`].
+    /// Whether a run can have come to these times, read from a file.
     pub(crate) fn fits(&self) -> bool {
         self.width > 0.0 && self.bins.len() <= BINS && self.bins.iter().sum::<u64>() == self.number
     }
@@ -86,16 +86,16 @@ mod tests {
 
     #[test]
     fn times_of_any_length_keep_their_moments_in_few_bins() {
-        let mut residence = Residence::new(0.5);
+        let mut found = TransitTimes::new(0.5);
         let times = || (0..10_000_u32).map(|k| f64::from(k) * 0.25);
-        times().for_each(|time| residence.add(time));
-        assert!(residence.fits());
-        assert_eq!(residence.number(), 10_000);
+        times().for_each(|time| found.add(time));
+        assert!(found.fits());
+        assert_eq!(found.number(), 10_000);
         // Mean and variance of equally spaced numbers.
-        assert!((residence.mean() / (0.25 * 9999.0 / 2.0) - 1.0).abs() < 1e-12);
+        assert!((found.mean() / (0.25 * 9999.0 / 2.0) - 1.0).abs() < 1e-12);
         let variance = 0.0625 * 10_000.0 * 10_001.0 / 12.0;
-        assert!((residence.variance() / variance - 1.0).abs() < 1e-12);
-        let (width, bins) = residence.distribution();
+        assert!((found.variance() / variance - 1.0).abs() < 1e-12);
+        let (width, bins) = found.distribution();
         // 2500 in 256 bins of 0.5 2^5.
         assert_eq!((width, bins.len()), (16.0, 157));
         assert!(bins[..156].iter().all(|&bin| bin == 64));

@@ -14,7 +14,7 @@ use crate::parameters::Kernel;
 /// Moving spheres that a thread must have to itself to pay: some ms of work a step, as measured with two (BENCHMARKS.md).
 const SPHERES_OF_A_THREAD: usize = 15_000;
 
-/// How many threads pay for so many moving spheres where so many processors are free; the reference kernel has one.
+/// Number of threads that pay for `spheres` moving spheres on `processors` free processors; 1 for the reference kernel.
 pub fn threads_that_pay(kernel: Kernel, spheres: usize, processors: usize) -> usize {
     match kernel {
         Kernel::Reference => 1,

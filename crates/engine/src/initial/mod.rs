@@ -35,7 +35,7 @@ fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
     random
 }
 
-/// Diameters of the first so many grains, those of the packing first \[d\].
+/// Diameters of the first `number` grains, beginning with those of the packing \[d\].
 pub fn diameters(packing: &Packing, number: usize) -> Vec<f64> {
     let mut random = random(packing.seed, Stream::Diameters);
     (0..number)
@@ -61,7 +61,7 @@ pub fn pack(
     pack_unless(packing, wall, normal, &|| false)
 }
 
-/// The same; `stop` is asked often whether to stop.
+/// As [`pack`], but `stop` is asked often whether to stop.
 ///
 /// # Errors
 /// As [`pack`]; [`EngineError::Stopped`] where it was asked to stop.

@@ -13,9 +13,9 @@ pub const LARGEST_MEAN_OVERLAP: f64 = 0.5;
 pub struct Packing {
     /// Number of grains.
     pub number: usize,
-    /// Their diameters.
+    /// How their diameters are distributed.
     pub sizes: Sizes,
-    /// Where the grains are.
+    /// How the grains stand at t = 0.
     pub state: InitialState,
     /// Velocity of all grains along z \[d/t\].
     pub axial_velocity: f64,

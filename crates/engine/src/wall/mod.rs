@@ -153,7 +153,7 @@ impl Wall {
         }
     }
 
-    /// Largest radius that the tube is expected to have, to the centres \[d\].
+    /// Largest radius that the tube is expected to reach, to the centres \[d\].
     pub fn usual_radius(&self) -> f64 {
         match self {
             Self::Prescribed(wall) => wall.wave().mean_radius + wall.wave().amplitude.abs(),

@@ -94,17 +94,17 @@ const TOUCH: f64 = 6.349_604_207_872_798;
 const CUBE_ROOT_OF_3: f64 = 1.442_249_570_307_408_3;
 
 impl Cohesion {
-    /// The attraction of these keys; `None` where both forces are 0.
+    /// This attraction; `None` where cohesion_force and surface_energy are both 0.
     pub fn given(self) -> Option<Self> {
         (self.cohesion_force > 0.0 || self.surface_energy > 0.0).then_some(self)
     }
 
-    /// Whether it is of the kind of Johnson, Kendall and Roberts.
+    /// Whether it is the adhesion of Johnson, Kendall and Roberts.
     pub fn is_jkr(&self) -> bool {
         self.surface_energy > 0.0
     }
 
-    /// Gap up to which a contact lasts that was made \[d\].
+    /// Gap at which a contact breaks \[d\].
     pub fn range<R: Real>(&self, normal: &impl NormalLaw, reduced_radius: R) -> R {
         match self.is_jkr() {
             true => self.scale(normal, reduced_radius).length * R::splat(self.pull_off.gap()),

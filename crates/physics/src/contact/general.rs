@@ -27,16 +27,16 @@ pub struct General {
     deserialize = "R: Deserialize<'de>, TangentialHistory<R>: Deserialize<'de>"
 ))]
 pub struct GeneralHistory<R: Real = f64> {
-    /// Of friction.
+    /// History of friction.
     pub friction: TangentialHistory<R>,
-    /// Of rolling resistance.
+    /// History of rolling resistance.
     pub rolling: TangentialHistory<R>,
     /// Energy that is lost when the contact breaks, above 0 where it lasts beyond touch \[m d^2/t^2\].
     pub bond: R,
 }
 
 impl General {
-    /// That of a model which has rolling resistance or cohesion; `None` where friction, or nothing, is all.
+    /// The law of a model with rolling resistance or cohesion; `None` for a model with neither.
     pub fn of(model: &ContactModel) -> Option<Self> {
         let ContactModel {
             friction,

@@ -111,7 +111,7 @@ impl<R: Real> Contact<R> {
     }
 }
 
-/// What a normal law answers: the force along n and its bookkeeping.
+/// What a normal law answers. Forces in m d/t^2, the energy in m d^2/t^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NormalForce<R: Real = f64> {
     /// f_n, the force on this sphere along n; positive repels.
@@ -122,7 +122,7 @@ pub struct NormalForce<R: Real = f64> {
     pub energy: R,
 }
 
-/// What a tangential law answers.
+/// What a tangential law answers. The force in m d/t^2, energies in m d^2/t^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TangentialForce<R: Real = f64> {
     /// f_t on this sphere, perpendicular to n.
@@ -175,7 +175,7 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// Two grains of a diameter, and of the mass that is its cube.
+    /// Two grains of diameter `diameter` \[d\] and mass `diameter`^3 \[m\], meeting at `speed` \[d/t\].
     pub fn of_twins(diameter: f64, speed: f64) -> Self {
         Self {
             reduced_mass: 0.5 * diameter * diameter * diameter,
@@ -185,7 +185,7 @@ impl Impact {
     }
 }
 
-/// What comes of an [`Impact`].
+/// Outcome of an [`Impact`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rebound {
     /// e, the speed of parting over that of meeting.
@@ -286,7 +286,7 @@ pub struct ContactLaw<N, T> {
     pub tangential: T,
 }
 
-/// The whole answer of a contact law.
+/// What a contact law answers. Forces in m d/t^2, energies in m d^2/t^2, powers in m d^2/t^3.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactForce<R: Real = f64> {
     /// Force on this sphere; the partner feels the opposite.
@@ -379,7 +379,7 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
 }
 
 impl Contact {
-    /// Whether the spheres overlap and have a normal, which spheres at the same place have not.
+    /// Whether the spheres overlap and have a normal; two centres at one place have none.
     #[inline(always)]
     pub fn touches(&self) -> bool {
         self.overlap > 0.0 && self.distance > 0.0

@@ -46,16 +46,16 @@ pub struct NewtonianPeristalsis {
     pressure: f64,
 }
 
-/// The tube and the fluid that a pressure in units is made dimensionless with; any consistent units.
+/// A tube and its fluid, by which a pressure rise is made dimensionless; any consistent units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PumpedTube {
-    /// a
+    /// Mean radius a.
     pub radius: f64,
-    /// lambda
+    /// Wavelength lambda.
     pub wavelength: f64,
-    /// c
+    /// Wave speed c.
     pub wave_speed: f64,
-    /// mu
+    /// Viscosity mu.
     pub viscosity: f64,
 }
 
@@ -95,11 +95,11 @@ impl NewtonianPeristalsis {
         Self::new(amplitude_ratio, pressure)
     }
 
-    /// Flow against a pressure rise Dp over a wavelength in units: P = a^2 Dp/(8 mu c lambda).
+    /// Flow against a pressure rise Dp over a wavelength, in the units of `PumpedTube`: P = a^2 Dp/(8 mu c lambda).
     ///
     /// A body force F on each of N grains, positive along the wave, stands for Dp = -N F lambda/(L pi a^2). Q is linear in
-    /// P, so that Q/Q0 = 1 - P/P0 whatever the viscosity, Q0 the flow without pressure and P0 the pressure that stops it:
-    /// so a pump's characteristic is set beside that of grains, which have no viscosity. `None` as in
+    /// P: Q/Q0 = 1 - P/P0 for every viscosity, with Q0 the flow without pressure and P0 the pressure that stops it.
+    /// Grains have no viscosity, so this line is what their flow is compared with. `None` as in
     /// [`NewtonianPeristalsis::new`], and where P is not finite.
     pub fn from_pressure_rise(
         amplitude_ratio: f64,

@@ -107,7 +107,7 @@ impl Lattice {
     }
 
     /// Widest gap of the straight tube: the radius of the largest sphere that could pass between three (aligned: four)
-    /// neighbouring wall spheres of a tube of radius `radius`, less nothing for softness \[d\].
+    /// neighbouring wall spheres of a tube of radius `radius` \[d\]. Soft grains pass through smaller gaps.
     ///
     /// The circumradius of the lattice triangle (rectangle) minus the wall spheres' radius; a grain of larger radius cannot
     /// leave without overlapping the wall.

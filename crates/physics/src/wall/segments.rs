@@ -56,7 +56,7 @@ impl SegmentDrive {
     }
 }
 
-/// The same, ready to be asked for the radius.
+/// A [`SegmentDrive`], ready to give the radius.
 ///
 /// R = a + b G, G = -sum_p w_p(y) h(tau - tau_p), y the place along the wave and tau the time in wavelengths and periods;
 /// h goes from 0 to 1 and back, w_p(y) from 1 in segment p to 0, both by 3 x^2 - 2 x^3; tau_p = (k_p + 1/2)/n + 3/4, k_p the

@@ -82,7 +82,7 @@ pub struct RadiusWave {
     pub amplitude: f64,
     /// lambda \[d\]
     pub wavelength: f64,
-    /// g or G
+    /// g or G.
     pub contraction: Contraction,
     /// +1.0 where the wave runs towards +z, -1.0 where it runs towards -z.
     pub heading: f64,

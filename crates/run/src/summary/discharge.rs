@@ -22,9 +22,9 @@ pub struct Discharge {
     /// Grains that have gone from the inlet to the outlet in the whole run.
     pub passed: u64,
     /// Mean time that they took, and its error; NaN of too few.
-    pub residence: (f64, f64),
+    pub transit_time: (f64, f64),
     /// Variance of that time.
-    pub residence_variance: f64,
+    pub transit_time_variance: f64,
     /// Volume of the grains discharged in a period over the clear volume of a wavelength; `None` of a static wave.
     pub refill_efficiency: Option<(f64, f64)>,
 }
@@ -36,8 +36,8 @@ impl Discharge {
         let ends = simulation.ends()?;
         let measured =
             |value: fn(&Sample) -> f64| (mean_of(late, value), error_of(late.iter().map(value)));
-        let residence = ends.residence();
-        let (passed, variance) = (residence.number(), residence.variance());
+        let times = ends.transit_times();
+        let (passed, variance) = (times.number(), times.variance());
         let rate = measured(|sample| sample.discharge_rate);
         let refill_efficiency = configuration.drive.period().map(|period| {
             let stroke = clear_volume(simulation) / f64::from(configuration.tube.waves);
@@ -51,8 +51,8 @@ impl Discharge {
             hold_up: measured(|sample| sample.hold_up),
             discharged: late.last().map_or(0.0, |sample| sample.discharged),
             passed,
-            residence: (residence.mean(), (variance / passed as f64).sqrt()),
-            residence_variance: variance,
+            transit_time: (times.mean(), (variance / passed as f64).sqrt()),
+            transit_time_variance: variance,
             refill_efficiency,
         })
     }

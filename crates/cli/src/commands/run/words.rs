@@ -227,9 +227,9 @@ fn through(discharge: &Discharge, summary: &Summary) -> String {
     if discharge.passed > 1 {
         let (grains, time) = (
             counted(discharge.passed, "grain"),
-            measured(discharge.residence),
+            measured(discharge.transit_time),
         );
-        let spread = significant(discharge.residence_variance.sqrt(), 3);
+        let spread = significant(discharge.transit_time_variance.sqrt(), 3);
         text.push_str(&format!("\n{grains} went from the inlet to the outlet, in {time} t on average (standard deviation {spread} t)"));
     }
     text

@@ -70,7 +70,7 @@ impl Scattered {
         }
     }
 
-    /// As many spheres as a lattice has, at random places that know nothing of each other.
+    /// As many spheres as a lattice has, at independent random places.
     pub fn random(lattice: &Lattice, seed: u64) -> Self {
         let mut random = random(seed);
         let length = lattice.length();
@@ -79,9 +79,9 @@ impl Scattered {
         Self::at(lattice, places)
     }
 
-    /// As many spheres as a lattice has, at random places one after another, none nearer to those before it than a
-    /// distance that begins where nobody could place them all and shrinks where one finds no room; distances are those
-    /// in the straight tube of radius `radius`.
+    /// As many spheres as a lattice has, at random places one after another. Each keeps a distance from those before it,
+    /// measured in the straight tube of radius `radius`. The distance begins too large for all of them, and shrinks
+    /// whenever one finds no room.
     pub fn disordered(lattice: &Lattice, radius: f64, seed: u64) -> Self {
         let mut random = random(seed);
         let (length, number) = (lattice.length(), lattice.spheres());
