@@ -55,14 +55,14 @@ if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
     "$scratch/venv/bin/pip" install --quiet --no-cache-dir numpy pyarrow
     "$scratch/venv/bin/python" tests/python/read_tables.py "$scratch/run" "$scratch/elastic" "$scratch/static"
 
-    step "the README's Python, its output"
+    step "the Python package's page, its output"
     # With the tests named too, features are those of the tests above: only the Python module is new.
     cargo build --workspace --locked --lib --tests
     cp -rL crates/python/python "$scratch/python"
     cp target/debug/lib_core.so "$scratch/python/peristalsis/_core.abi3.so"
-    PYTHONPATH=$scratch/python "$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md
+    PYTHONPATH=$scratch/python "$scratch/venv/bin/python" scripts/run_snippets.py --only python crates/python/README.md
 else
-    step "skipped: spelling, tables, as pyarrow reads them, and the README's Python (python3 makes no virtual environment here)"
+    step "skipped: spelling, tables, as pyarrow reads them, and the Python package's page (python3 makes no virtual environment here)"
 fi
 
 step "all checks passed"

@@ -47,11 +47,11 @@ step "types"
 "$environment/bin/stubtest" peristalsis --mypy-config-file pyproject.toml --allowlist <(echo 'peristalsis\._view\.Widget')
 PATH="$environment/bin:$PATH" pyright --verifytypes peristalsis --ignoreexternal
 
-step "the wheel in an environment of its own, with the snippets of the README and the book"
+step "the wheel in an environment of its own, with the snippets of its page and the book"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch/venv"
 "$scratch/venv/bin/pip" install --quiet "$wheel[plot]"
-"$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md docs/book/src/guides/collapse.md docs/book/src/guides/python.md
+"$scratch/venv/bin/python" scripts/run_snippets.py --only python crates/python/README.md docs/book/src/guides/collapse.md docs/book/src/guides/python.md
 
 step "the Python package is well"

@@ -23,7 +23,7 @@ pub struct Bootstrap {
 }
 
 impl Bootstrap {
-    /// So many resamples, by random numbers of a seed.
+    /// `resamples` resamples, by the random numbers of `seed`.
     pub const fn new(resamples: usize, seed: u64) -> Self {
         Self { resamples, seed }
     }

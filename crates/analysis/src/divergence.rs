@@ -62,7 +62,7 @@ pub fn compare_laws(
     })
 }
 
-/// The same with a scatter that changes toward the critical width, as that of jams does.
+/// As [`compare_laws`], with a scatter that changes toward the critical width, as the scatter of jams does.
 ///
 /// Gamma distributions about the mean, whose relative variance goes as (w_c - w)^-q, or as exp(-q w) in a law without
 /// w_c, q free: two parameters of the scatter for every law. With a constant scatter, rejected by runs as a rule

@@ -90,7 +90,7 @@ pub fn plain(value: f64) -> String {
     Layout { power, decimals: 0 }.times_power(typeset(mantissa))
 }
 
-/// A number with so many decimals.
+/// A number with `decimals` decimals.
 pub fn decimal(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return not_finite(value);

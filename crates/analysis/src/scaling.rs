@@ -10,16 +10,16 @@ pub enum Scaling {
     /// `y = p^-a f((w_c - w)/p^b)` with `w_c = slope p + w_max`: p the strain rate, w the abscissa, y the transition
     /// time or its variance. Parameters a, b, slope, w_max. Claims F3 (a = 7/2, b = 3/2) and F4 (a = 7).
     CriticalLine,
-    /// The same with a w_c of its own for every curve. Parameters a, b, then w_c of each curve in turn.
+    /// As `CriticalLine`, with a w_c of its own for every curve. Parameters a, b, then w_c of each curve in turn.
     CriticalEach,
-    /// The same with known w_c, one a curve. Parameters a, b.
+    /// As `CriticalLine`, with known w_c, one a curve. Parameters a, b.
     CriticalKnown(Vec<f64>),
     /// `y = p^-a f((x - x_c) p^b)`: p the length of the system. Parameters a, b, x_c. Plain axes, not logarithms.
     FiniteSize,
 }
 
 impl Scaling {
-    /// Names of the parameters for so many curves.
+    /// Names of the parameters for `curves` curves.
     pub fn parameters(&self, curves: usize) -> Vec<String> {
         let names: &[&str] = match self {
             Self::CriticalLine => &["a", "b", "slope", "w_max"],

@@ -22,7 +22,8 @@ use crate::waveform::WaveformName;
 
 /// Everything that determines one run; alternatives of the TOML form are resolved to one value.
 ///
-/// Units: mass m, diameter d, time t as in CONVENTIONS. Two configurations with the same values here run the same.
+/// Units: mass m, diameter d, time t as on the page "Symbols, units, signs" of the book. Equal values make equal
+/// runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Configuration {
     /// The grains.
@@ -392,8 +393,8 @@ impl Configuration {
         self.drive.strain_rate * self.tube.wavelength
     }
 
-    /// The same run under a constant drive that is as hard on the grains as the schedules ever become: the least width, the
-    /// largest force amplitude and the fastest wave that the run reaches. Without schedules it is the run itself.
+    /// This run under a constant drive as hard on the grains as its schedules ever become: the least width, the largest
+    /// force amplitude and the fastest wave. Without schedules it is the run itself.
     pub fn at_its_hardest(&self) -> Self {
         let mut hardest = self.clone();
         let periods = self.run.periods.unwrap_or(0.0);

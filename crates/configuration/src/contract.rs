@@ -17,9 +17,8 @@ pub(crate) fn check(table: &Table, problems: &mut Problems) {
     .table(table, &schema::SCHEMA, "");
 }
 
-/// Checks a document of another kind against its own JSON schema: unknown keys, types, names and ranges, with the same
-/// messages as those of a configuration. Of the schema's words those are understood that [`schema`](crate::schema())
-/// itself uses.
+/// Checks a document of another kind against its own JSON schema: unknown keys, types, names and ranges, with the messages
+/// of a configuration. It understands the words of JSON Schema that [`schema`](crate::schema()) uses.
 pub fn check_against(schema: &Value, table: &Table, problems: &mut Problems) {
     Contract {
         known: &schema::keys_of(schema),

@@ -28,11 +28,11 @@ pub struct Schedule {
 /// Form of a [`Schedule`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ScheduleForm {
-    /// Two places (time in periods, value) between which the value is linear in time, constant before and after.
+    /// Two pairs (time in periods, value) between which the value is linear in time, constant before and after.
     Ramp([(f64, f64); 2]),
     /// (time in periods, value), times ascending, at least one: each value from its time on.
     Steps(Vec<(f64, f64)>),
-    /// Such places between which the value is linear in time, constant before the first and after the last; of two at one
+    /// Such pairs between which the value is linear in time, constant before the first and after the last; of two at one
     /// time the later holds from then on.
     Course(Vec<(f64, f64)>),
 }
@@ -47,11 +47,10 @@ impl Schedule {
         }
     }
 
-    /// The same schedule up to `start`, from there linear in time to `value` at `end`, and constant; in periods. With the
-    /// end at the start it jumps, and an earlier jump at that time is forgotten.
+    /// This schedule up to `start`, then linear in time to `value` at `end`, then constant; times in periods. Where `end`
+    /// equals `start` it jumps, and an earlier jump at that time is forgotten.
     ///
-    /// `None` where the schedule has not come to rest by `start`, or `end` is before it: what has been goes on to be
-    /// exactly what it was.
+    /// `None` where the schedule has not come to rest by `start`, or `end` is before it: the past does not change.
     pub fn going_on(&self, start: f64, end: f64, value: f64) -> Option<Self> {
         let mut knots = self.knots();
         let &(rest, resting) = knots.last()?;

@@ -21,13 +21,9 @@ pub(crate) fn edit_distance(one: &str, other: &str) -> usize {
     last[other.len()]
 }
 
-/// Edits that are still taken for a slip of the pen in a word; of a key in another table than the one written fewer.
-fn tolerance(word: &str, is_in_other_table: bool) -> usize {
-    let letters = word.chars().count();
-    match is_in_other_table {
-        true => letters / 6,
-        false => (letters / 3).clamp(1, 3),
-    }
+/// Edits that are still taken for a slip of the pen in a word.
+fn tolerance(word: &str) -> usize {
+    (word.chars().count() / 3).clamp(1, 3)
 }
 
 /// A word no user meant: longer than any name by far. Distances to it would only cost time.
@@ -49,15 +45,15 @@ pub(crate) fn nearest<'a>(path: &str, known: impl IntoIterator<Item = &'a str>) 
         let (other_table, other_name) = split(candidate);
         let is_elsewhere = table != other_table;
         let is_part = other_name.ends_with(&part) || other_name.starts_with(&beginning);
-        let distance = match is_part && !is_elsewhere {
-            true => 0,
-            false => edit_distance(name, other_name),
+        // In another table than the one that was written every edit counts twice.
+        let distance = match (is_part, is_elsewhere) {
+            (true, false) => 0,
+            (_, true) if !table.is_empty() => 2 * edit_distance(name, other_name),
+            _ => edit_distance(name, other_name),
         };
         (distance, is_elsewhere, candidate)
     });
-    let near = distances.filter(|&(distance, is_elsewhere, _)| {
-        distance <= tolerance(name, is_elsewhere && !table.is_empty())
-    });
+    let near = distances.filter(|(distance, ..)| *distance <= tolerance(name));
     let nearest = near.min_by_key(|(distance, is_elsewhere, _)| (*distance, *is_elsewhere));
     nearest.map(|(.., candidate)| candidate)
 }

@@ -11,7 +11,7 @@ pub enum Scale {
     /// Equal steps for equal differences.
     #[default]
     Linear,
-    /// The same for what is counted: ticks stand at whole numbers only.
+    /// Linear, for counts: ticks stand at whole numbers only.
     Counting,
     /// Equal steps for equal ratios; only positive values have a place.
     Logarithmic,

@@ -66,13 +66,13 @@ impl ColourScale {
         }
     }
 
-    /// The same with equal steps of colour for equal ratios.
+    /// This scale with equal steps of colour for equal ratios.
     pub fn logarithmic(mut self) -> Self {
         self.scale = Scale::Logarithmic;
         self
     }
 
-    /// The same in the colours of another palette.
+    /// This scale in the colours of another palette.
     pub fn palette(mut self, palette: Palette) -> Self {
         self.palette = palette;
         self

@@ -60,7 +60,7 @@ impl Units {
         }
     }
 
-    /// What makes a number of a pressure, in markup.
+    /// Factor in markup that turns a pressure into a pure number.
     pub fn per_pressure(self) -> &'static str {
         match self {
             Self::Linear => " *d*/*k*",

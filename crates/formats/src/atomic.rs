@@ -53,7 +53,7 @@ pub fn write_with(
     Pending::with(path, produce)?.commit()
 }
 
-/// A file that is being made under another name, by this program or by one that is given that name.
+/// A file that is being made under a temporary name, by this program or by another that is given that name.
 ///
 /// Dropped without [`Pending::commit`] it leaves nothing behind.
 #[derive(Debug)]

@@ -42,7 +42,7 @@ pub const MAXIMUM_STATE_BYTES: u64 = 1 << 30;
 const SIGNATURE: [u8; 8] = *b"\x89PSTL\r\n\x1a";
 const HEADER_BYTES: usize = 84;
 
-/// What a checkpoint is a checkpoint of; writer and reader must name the same.
+/// Which state a checkpoint holds; writer and reader must name the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CheckpointIdentity {
     /// Kind of the state, in printable ASCII padded with spaces, such as `*b"engine  "`.

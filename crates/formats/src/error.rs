@@ -42,7 +42,7 @@ pub enum FormatError {
     /// A metadata key is taken by the file format.
     #[error("the metadata key `{0}` is reserved for the file format")]
     ReservedMetadata(String),
-    /// Two tables to be joined differ in their columns; the first that has no equal in the other table.
+    /// Two tables to be joined differ in their columns; holds the first column without an equal.
     #[error(
         "the tables differ at column `{0}`: appending needs the same names, kinds, units and descriptions in the same order"
     )]
@@ -73,7 +73,7 @@ pub enum FormatError {
     /// The Parquet library refused to write or read.
     #[error("Parquet: {0}")]
     Parquet(#[from] ::parquet::errors::ParquetError),
-    /// A Parquet file is not what was once written, and what betrayed it.
+    /// A Parquet file changed on disk; holds the sign of it.
     #[error("the Parquet file is corrupt: {0}")]
     CorruptParquet(String),
     /// A Parquet column has a type that no [`Values`](crate::Values) holds, or lacks a value where that kind cannot.
@@ -163,7 +163,7 @@ pub enum FormatError {
         /// Bytes present.
         found: u64,
     },
-    /// The checkpoint is complete in length but not what was once written, and what betrayed it.
+    /// The checkpoint has its full length but changed on disk; holds the sign of it.
     #[error("the checkpoint is corrupt: {0}")]
     CorruptCheckpoint(String),
     /// The state is larger than a checkpoint may be.

@@ -68,7 +68,7 @@ impl Default for ContactForces {
 }
 
 impl ContactForces {
-    /// Looks, if that is due.
+    /// Records the forces now, where the next record is due.
     pub fn look(&mut self, simulation: &Simulation) {
         if simulation.step() >= self.due {
             self.due = simulation.step() + STEPS_BETWEEN_LOOKS;
@@ -76,14 +76,14 @@ impl ContactForces {
         }
     }
 
-    /// The looks from a time \[t\] on, or the last one before.
+    /// The records from the time `start` \[t\] on; where there are none, the last one before.
     pub fn late(&self, start: f64) -> &[ContactForce] {
         let looks = self.looks.rows();
         let early = looks.partition_point(|look| look.time < start);
         &looks[early.min(looks.len().saturating_sub(1))..]
     }
 
-    /// Whether it can be what was seen by a run.
+    /// Whether a run can have come to this state, read from a file.
     pub fn fits(&self) -> bool {
         self.looks.fits(1)
     }

@@ -10,9 +10,8 @@ const MOST_TIMES: usize = 1 << 16;
 
 /// Variances of axial displacements since origins spread over the whole run, taken at the end of each period.
 ///
-/// Of a run that changes its kind of flow, displacements since its start say little about how grains disperse late: those
-/// left behind first may catch up. So origins are taken at equal distances all along, ever wider apart, of which the late
-/// part of a run has some of its own.
+/// Where a run changes its kind of flow, displacements since its start say little about how grains disperse late. So
+/// origins are taken at equal distances all along the run, ever wider apart: the late part has some of its own.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct AxialDispersion {
     /// End of each period, or of every so many of a long run, the start of the run before them \[t\].
@@ -49,7 +48,7 @@ impl AxialDispersion {
         dispersion
     }
 
-    /// Whether it can be what was seen of so many grains.
+    /// Whether a run of `grains` grains can have come to this state, read from a file.
     pub fn fits(&self, grains: usize) -> bool {
         let times = self.times.len();
         (1..=2 * times).contains(&self.stride)
@@ -126,8 +125,8 @@ impl AxialDispersion {
     /// Half the rates at which the variance grows from period to period, d var(z)/(2 dt), from the time `start` \[t\] on
     /// \[d^2/t\]: their mean is the coefficient of dispersion D.
     ///
-    /// Since the first origin from then on, but for its first period, in which grains do not yet forget how they moved; or
-    /// since the last origin before, where none has two periods more behind it.
+    /// Displacements count from the first origin after `start`; its first period is left out, as grains then still remember
+    /// how they moved. Where no such origin has two more periods behind it, they count from the last origin before.
     pub fn rates_from(&self, start: f64) -> Vec<f64> {
         // Rounding must not make an origin at the start itself one before it.
         let earliest = start - 1e-9 * start.abs();

@@ -76,9 +76,9 @@ pub fn grain_contacts(simulation: &Simulation) -> Vec<GrainContact> {
 /// Forces and torques on the grains at the present positions and velocities, and the stress in them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
-    /// Of each grain the sum over its contacts, and the body force \[m d/t^2\].
+    /// Force on each grain: the sum over its contacts, and the body force \[m d/t^2\].
     pub forces: Vec<DVec3>,
-    /// Of each grain the sum over its contacts; 0 without friction \[m d^2/t^2\].
+    /// Torque on each grain, the sum over its contacts; 0 without friction \[m d^2/t^2\].
     pub torques: Vec<DVec3>,
     /// sigma_ab = (sum over contacts of l_a f_b + sum over grains of m dv_a dv_b)/V \[m/(d t^2)\].
     ///

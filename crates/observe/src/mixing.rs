@@ -15,19 +15,19 @@ const IN_A_CELL: usize = 10;
 ///
 /// M = (s_0^2 - s^2)/(s_0^2 - s_r^2), after Lacey, J. Appl. Chem. 4, 257 (1954). s^2 is the variance over the cells of the
 /// part p_c of one kind, about p, its part of all; s_0^2 = p (1 - p) is that of kinds that lie apart, and
-/// s_r^2 = s_0^2 (C - 1)/(N - 1) that of N grains thrown into C cells at random. M is 0 where the kinds lie apart and 1 in
-/// the mean over random arrangements, about which it spreads by (2 (C - 1))^(1/2)/(N - C).
+/// s_r^2 = s_0^2 (C - 1)/(N - 1) that of N grains thrown into C cells at random. M is 0 where the kinds lie apart. Over
+/// random arrangements its mean is 1 and its standard deviation (2 (C - 1))^(1/2)/(N - C).
 ///
 /// The cells hold equal numbers of grains, N/C, in the order of a coordinate: 10 cells, fewer where they would hold less than 10
-/// grains. There is none of less than 20 grains, nor in an open tube, whose grains come and go. M depends on the cells: more
+/// grains. M needs 20 grains and a periodic tube: in an open one grains come and go. M depends on the cells: more
 /// of them see unmixed patches that are smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mixing {
-    /// Of the halves that began in front of and behind the middle of the tube. Cells follow each other along the tube, and move
-    /// with the mean of the grains, so that grains which move all alike do not mix.
+    /// M of the grains that began in front of the middle of the tube and behind it. The cells lie along the tube and move with
+    /// the mean of the grains: grains that all move alike do not mix.
     pub axial: f64,
-    /// Of the halves that began nearer to the axis and nearer to the wall. Cells are shells from the axis outward, by the radial
-    /// place r/(R - (d_w + d)/2) of a grain: R the radius of the tube at its z, d_w the diameter of the wall's spheres.
+    /// M of the grains that began nearer to the axis and nearer to the wall. The cells are shells from the axis outward, by the
+    /// radial place r/(R - (d_w + d)/2) of a grain: R the radius of the tube at its z, d_w the diameter of the wall's spheres.
     pub radial: f64,
 }
 

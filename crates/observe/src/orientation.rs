@@ -28,7 +28,7 @@ impl Orientations {
         }
     }
 
-    /// Whether their number fits so many grains.
+    /// Whether there is one for each of `grains` grains.
     pub fn fit(&self, grains: usize) -> bool {
         [self.turned.len(), self.angular_velocity.len()] == [grains; 2]
     }

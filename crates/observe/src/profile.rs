@@ -209,7 +209,7 @@ impl WaveFrameProfile {
         }
     }
 
-    /// Whether it can be a profile with so many bins and samples in a block.
+    /// Whether it is a profile of `bins` bins and `samples_per_block` samples in a block.
     pub fn fits(&self, bins: usize, samples_per_block: u64) -> bool {
         let first = samples_per_block.max(1);
         // Blocks are doubled when there are many of them.

@@ -167,7 +167,7 @@ impl Observer {
         }
     }
 
-    /// Whether it can be the observer of so many grains.
+    /// Whether it is the observer of `grains` grains.
     pub fn fits(&self, grains: usize) -> bool {
         [self.unfolded.len(), self.start.len()] == [grains; 2] && self.kinds.fits(grains)
     }
@@ -178,7 +178,7 @@ impl Observer {
         Sample::of(&before, self, view)
     }
 
-    /// Ends the interval and begins the next; answers the observer as it stood when the one that ends began.
+    /// Ends the interval and begins the next; answers the observer as it stood when the ended interval began.
     pub fn end_interval(&mut self, view: &View<'_>) -> Self {
         let start = core::mem::take(&mut self.start);
         let kinds = core::mem::take(&mut self.kinds);
@@ -200,7 +200,7 @@ impl Observer {
         self.segregation
     }
 
-    /// Ends a period where the last interval has just ended: looks how the grains lie, which takes as long as some steps.
+    /// Ends a period together with the last interval: looks how the grains lie, which takes as long as a few steps.
     pub fn end_period(&mut self, view: &View<'_>) {
         self.mixing = Mixing::of(self, view);
         self.segregation = Segregation::of(view);

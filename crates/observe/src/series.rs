@@ -24,9 +24,8 @@ impl Join for f64 {
 
 /// Entries of equally many rows, one after another.
 ///
-/// Of as many entries as have room each has rows of its own. When there are more, every two neighbours become one, and so
-/// do those that follow: the series is then that of a run which is looked at half as often, and never longer than
-/// [`MOST_ROWS`].
+/// While there is room each entry has rows of its own. Then every two neighbours become one, and so do later ones, as if
+/// the run were looked at half as often. The series is never longer than [`MOST_ROWS`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series<T> {
     rows: Vec<T>,
@@ -39,7 +38,7 @@ pub struct Series<T> {
 }
 
 impl<T: Join> Series<T> {
-    /// An empty one, whose entries have so many rows.
+    /// An empty series, whose entries have `width` rows.
     pub fn new(width: usize) -> Self {
         Self {
             rows: Vec::new(),
@@ -89,7 +88,7 @@ impl<T: Join> Series<T> {
         (self.rows, self.each) = (halved, 2 * each);
     }
 
-    /// Forgets all but so many entries. Rows that stand for earlier and later ones stay as they are.
+    /// Forgets all but the first `count` entries. Rows that stand for earlier and later ones stay as they are.
     pub fn truncate(&mut self, count: u64) {
         if count >= self.count() {
             return;
@@ -117,7 +116,7 @@ impl<T: Join> Series<T> {
         self.each
     }
 
-    /// Whether it can be a series of entries of so many rows.
+    /// Whether it is a series of entries of `width` rows.
     pub fn fits(&self, width: usize) -> bool {
         self.width == width.max(1)
             && self.rows.len() <= MOST_ROWS

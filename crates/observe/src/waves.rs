@@ -64,7 +64,7 @@ pub struct WaveByWave {
 }
 
 impl WaveByWave {
-    /// Begins a period of so many samples.
+    /// Begins a period of `samples_per_period` samples.
     pub fn new(simulation: &Simulation, samples_per_period: u64) -> Self {
         let waves = simulation.wall().waves() as usize;
         Self {
@@ -76,7 +76,7 @@ impl WaveByWave {
         }
     }
 
-    /// Whether it can be what was seen of so many waves, with so many samples per period.
+    /// Whether it is of `waves` waves, with `samples_per_period` samples.
     pub fn fits(&self, waves: usize, samples_per_period: u64) -> bool {
         self.sums.len() == waves
             && self.samples_per_period == samples_per_period.max(1)

@@ -9,7 +9,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of such bytes.
+    /// A picture of these bytes.
     ///
     /// # Panics
     /// Where their number is not three a pixel.

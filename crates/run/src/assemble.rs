@@ -111,9 +111,9 @@ pub(crate) fn check_number(configuration: &Configuration) -> Result<(), RunError
 pub struct PlacedGrains {
     /// Centres; z is taken into \[0, L) \[d\].
     pub positions: Vec<DVec3>,
-    /// \[d/t\]
+    /// Velocities \[d/t\].
     pub velocities: Vec<DVec3>,
-    /// \[d\]
+    /// Diameters \[d\].
     pub diameters: Vec<f64>,
 }
 
@@ -327,8 +327,8 @@ fn schedule(
         .expect("a validated schedule has finite knots in order of time")
 }
 
-/// Wavelengths that the wave runs in the run, where a schedule changes its rate: the run's periods are those of
-/// drive.strain_rate, which it then does not run.
+/// Wavelengths that the wave runs, where a schedule changes its rate; `None` elsewhere. `run.periods` counts periods of
+/// drive.strain_rate, and then says another number.
 pub fn scheduled_wavelengths(configuration: &Configuration) -> Option<f64> {
     let rate = ScheduledParameter::StrainRate;
     configuration.drive.schedule(rate)?;

@@ -11,7 +11,7 @@ pub enum RunError {
     /// The engine refuses, or the run diverged.
     #[error(transparent)]
     Engine(#[from] EngineError),
-    /// So many grains that packing them is not tried.
+    /// Too many grains: packing them is not tried.
     #[error(
         "{grains} grains do not fit: their volume fraction would be {volume_fraction:.3}, and above {limit} packing is \
          not tried"
@@ -24,12 +24,12 @@ pub enum RunError {
         /// Largest volume fraction that is tried.
         limit: f64,
     },
-    /// So many spheres that there is no memory for them.
+    /// Too many spheres for the memory.
     #[error("{spheres} moving spheres take about {:.1} GB of memory, which the system does not give", *bytes as f64 / 1e9)]
     NoMemory {
         /// Grains, and spheres of an elastic wall.
         spheres: u64,
-        /// What they take, about.
+        /// Memory that they take, about.
         bytes: u64,
     },
     /// The configuration of a record cannot be read.
@@ -57,7 +57,7 @@ pub enum RunError {
         /// Why.
         source: std::io::Error,
     },
-    /// A trajectory that cannot be.
+    /// A trajectory that cannot be written as asked.
     #[error("no such trajectory: {reason}")]
     Trajectory {
         /// Why.
@@ -65,25 +65,25 @@ pub enum RunError {
         /// What to ask for instead.
         help: &'static str,
     },
-    /// Grains cannot stand so.
+    /// Grains cannot stand where they were put.
     #[error("the grains cannot be placed so: {reason}")]
     Placement {
         /// Why.
         reason: String,
     },
-    /// Grains that a caller of the library put somewhere, which a configuration does not say.
+    /// A configuration with `initial.state = "placed"`: it does not say where the grains stand.
     #[error(
         "initial.state is \"placed\": a caller of the library has put the grains somewhere, which a configuration does not \
          say; go on from a checkpoint of that run, or take \"rest\" or \"jammed\""
     )]
     NotPlaced,
-    /// A run cannot be driven like that.
+    /// The drive cannot follow the course that was asked for.
     #[error("cannot drive the run so: {reason}")]
     Steering {
         /// Why.
         reason: String,
     },
-    /// A picture or film that cannot be.
+    /// A picture or film that cannot be made as asked.
     #[error("no such picture: {reason}")]
     Picture {
         /// Why.
@@ -134,7 +134,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// That a figure of this name cannot be drawn.
+    /// The error of a figure of this name.
     pub fn of_figure(
         figure: &'static str,
     ) -> impl FnOnce(peristalsis_figures::FigureError) -> Self {

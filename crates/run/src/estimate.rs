@@ -50,7 +50,7 @@ pub struct Estimate {
     pub period: Option<f64>,
     /// Length of the run in periods.
     pub periods: Option<f64>,
-    /// Wavelengths that the wave runs in them, where a schedule changes its rate.
+    /// Wavelengths that the wave runs, where a schedule changes its rate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wavelengths: Option<f64>,
     /// Length of the run \[t\].
@@ -67,7 +67,7 @@ pub struct Estimate {
     pub restitution: f64,
     /// J/Jmax of a Newtonian fluid in this tube, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
-    /// The same in SI, where the units are said.
+    /// The estimate in SI, where the configuration says its units.
     pub si: Option<SiEstimate>,
     /// Seconds that packing the grains is expected to take, from the packing of a trial on this machine.
     pub packing_seconds: f64,
@@ -77,7 +77,7 @@ pub struct Estimate {
     pub threads: usize,
     /// The kernel that computes the forces.
     pub kernel: Kernel,
-    /// What it alone computes of this run, where it is the reference kernel.
+    /// What the reference kernel alone computes of this run, where it needs that kernel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_only: Option<&'static str>,
     /// Bytes of memory, about.
@@ -100,7 +100,7 @@ pub fn estimate(
     estimate_by(threads(configuration), configuration, trajectory)
 }
 
-/// The same of a run by so many threads.
+/// As [`estimate`], with `threads` threads.
 ///
 /// # Errors
 /// As [`estimate`].

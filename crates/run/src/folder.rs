@@ -75,7 +75,7 @@ impl RunFolder {
         folder.claim()
     }
 
-    /// The same in the first free one of the folders `inside/stem-1`, `inside/stem-2`, ..., which no other program gets.
+    /// As [`RunFolder::create`], in the first free folder of `inside/stem-1`, `inside/stem-2`, ...; no other program gets it.
     ///
     /// # Errors
     /// [`RunError::Folder`] where it cannot be made or written to. Nothing is changed then.
@@ -164,9 +164,9 @@ impl RunFolder {
         })
     }
 
-    /// Takes the folder for work on its run, until this value is dropped or the program ends; other programs may still read
-    /// it. Where the file system knows no locks, nothing is taken. New folders are taken when they are made. What a killed
-    /// program left half-written goes.
+    /// Locks the folder for work on its run, until this value is dropped or the program ends; other programs may still read
+    /// it. A file system without locks locks nothing. New folders are locked when they are made. Files that a killed program
+    /// left half-written are deleted.
     ///
     /// # Errors
     /// [`RunError::AtWork`] where another program, or another value of this one, has it.
@@ -217,12 +217,12 @@ impl RunFolder {
         })
     }
 
-    /// Whether what the run came to was written, in its summary.
+    /// Whether the folder has a summary.
     pub fn has_summary(&self) -> bool {
         self.file(SUMMARY).is_file()
     }
 
-    /// Whether a state was saved in it.
+    /// Whether the folder has a saved state.
     pub fn has_state(&self) -> bool {
         self.file(STATE).is_file()
     }

@@ -8,8 +8,8 @@ use peristalsis_observe::{
     WaveFlow, WaveFrameProfile, note_wall_faults,
 };
 
-/// Thresholds of J/Jmax at which every run notes its transition besides the configured one: which of them lies midway
-/// between the branches of the flow is known only when many runs have ended.
+/// Thresholds of J/Jmax at which every run notes its transition, besides the configured one. Which of them lies midway
+/// between the branches of the flow is known only after many runs.
 pub const THRESHOLDS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
 /// Samples, period averages, the search for the transition, the profile in the wave frame and the flow of each wave.
@@ -162,7 +162,7 @@ impl Recorder {
         *self.waves.series() = flows;
     }
 
-    /// The samples so far; of a very long run each is that of [some intervals](Self::intervals).
+    /// The samples so far; in a very long run each covers [several intervals](Self::intervals).
     pub fn samples(&self) -> &[Sample] {
         self.samples.rows()
     }
@@ -172,13 +172,13 @@ impl Recorder {
         self.samples.count()
     }
 
-    /// Intervals of a sample that is kept: 1, or a power of 2 in a run of more than [`MOST_ROWS`](peristalsis_observe::MOST_ROWS)
+    /// Intervals that a kept sample covers: 1, or a power of 2 in a run of more than [`MOST_ROWS`](peristalsis_observe::MOST_ROWS)
     /// samples.
     pub fn intervals(&self) -> u64 {
         self.samples.each()
     }
 
-    /// J/Jmax averaged over each whole period so far; of a very long run over some of them.
+    /// J/Jmax averaged over each whole period so far; in a very long run over several periods each.
     pub fn averages(&self) -> &[f64] {
         self.averages.rows()
     }

@@ -90,7 +90,7 @@ impl Run {
         Self::new_unless(configuration, &|| false)
     }
 
-    /// The same; `stop` is asked often whether to stop.
+    /// As [`Run::new`], but `stop` is asked often whether to stop.
     ///
     /// # Errors
     /// As [`Run::new`]; [`EngineError::Stopped`] where it was asked to stop.
@@ -169,7 +169,7 @@ impl Run {
         Self::resume(configuration, state)
     }
 
-    /// The same run under a configuration of the same physics, which may ask for another length or for another late part.
+    /// This run under a configuration of the same physics, which may have another length or late part.
     ///
     /// # Errors
     /// [`RunError::Format`] where the configuration is of other physics; [`RunError::Engine`] where what was measured does
@@ -241,7 +241,7 @@ impl Run {
         Ok(self.simulation.compute_with(instructions, threads)?)
     }
 
-    /// Computes with the widest instructions and as many threads as pay, of so many processors, from now on.
+    /// Computes with the widest instructions and as many threads as pay on `processors` processors, from now on.
     ///
     /// # Errors
     /// [`RunError::Engine`] where the system gives no more threads.
@@ -318,8 +318,8 @@ impl Run {
             .is_some_and(|stopping| stopping.is_settled(&self.recorder))
     }
 
-    /// The part at the end of what was measured that late means are taken over: as configured, unless the run
-    /// [has settled](Self::is_settled), when it is the second half of the periods that it was given for that.
+    /// Fraction of the measurements, at their end, over which late means are taken: as configured; in a run that
+    /// [has settled](Self::is_settled) the second half of its settling periods.
     pub fn late_fraction(&self) -> f64 {
         match self.stopping {
             Some(stopping) if self.is_settled() => stopping.late_fraction(&self.recorder),

@@ -25,13 +25,13 @@ pub struct SiEstimate {
     pub duration_s: f64,
     /// Step taken \[s\].
     pub time_step_s: f64,
-    /// What goes through a section in a second if all grains go with the fastest wave, Jmax m \[kg/s\].
+    /// Mass flow if all grains travel with the fastest wave, Jmax m \[kg/s\].
     pub largest_mass_flow_rate_kg_per_s: f64,
     /// Gravity [x, y, z] \[m/s^2\].
     pub gravity_m_per_s2: [f64; 3],
-    /// Body force along the wave, gravity's part with it \[m/s^2\].
+    /// Body force along the wave, with gravity's part along it \[m/s^2\].
     pub body_force_m_per_s2: f64,
-    /// Pressure rise over a wavelength that it stands for \[Pa\].
+    /// Pressure rise over a wavelength that this body force stands for \[Pa\].
     pub pressure_rise_pa: f64,
     /// Overlap over diameter of two grains that meet at the speed of the fastest wave.
     pub overlap_at_wave_speed: f64,

@@ -4,7 +4,7 @@ use peristalsis_analysis::Transition;
 
 use crate::recorder::Recorder;
 
-/// Ends a run once its transition has been found and so many periods have passed since.
+/// Ends a run a number of periods after its transition.
 ///
 /// A run without a transition goes on to its configured end: what it says of the transition time is then censored
 /// there, and nowhere earlier.

@@ -37,7 +37,7 @@ pub enum StudyError {
     /// A file cannot be written, or is not what it should be.
     #[error(transparent)]
     Format(#[from] FormatError),
-    /// The index of the store.
+    /// The index of the store cannot be read or written.
     #[error("the index of the store, {}: {source}", path.display())]
     Index {
         /// The file.
@@ -48,7 +48,7 @@ pub enum StudyError {
     /// A run cannot be packed, saved or written.
     #[error("run {identity}: {source}")]
     Run {
-        /// Which.
+        /// The run.
         identity: crate::Identity,
         /// Why.
         source: RunError,
@@ -56,7 +56,7 @@ pub enum StudyError {
     /// The products of a run do not read back as they were written.
     #[error("run {identity} does not read back as it was written: {reason}")]
     NotWritten {
-        /// Which.
+        /// The run.
         identity: crate::Identity,
         /// What differs.
         reason: String,
@@ -79,7 +79,7 @@ pub enum StudyError {
         /// Name of the study that was asked for.
         expected: String,
     },
-    /// No run, or more than one, has such an identity.
+    /// No run, or more than one, has an identity that begins so.
     #[error("{number} runs of this store have an identity that begins with {prefix:?}")]
     NoSuchRun {
         /// What was asked for.

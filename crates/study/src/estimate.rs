@@ -24,7 +24,7 @@ pub struct StudyEstimate {
     pub points: usize,
     /// Runs before refinement.
     pub runs: usize,
-    /// Runs that refinement adds where every change lies within one gap between points and runs differ all the way between.
+    /// Runs that refinement adds, if every change lies within one gap between points and runs differ throughout it.
     pub refinement_runs: usize,
     /// Steps of all runs before refinement, none of them ending early.
     pub steps: u64,

@@ -129,7 +129,7 @@ pub(crate) fn state_name(state: InitialState) -> &'static str {
 /// One run of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlannedRun {
-    /// Who it is.
+    /// Its identity.
     pub identity: Identity,
     /// Index into [`Plan::points`].
     pub point: usize,

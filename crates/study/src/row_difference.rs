@@ -42,8 +42,8 @@ pub struct RowDifference {
 }
 
 impl Row {
-    /// The columns in which this row, which was published, differs in a bit from the same row computed again. Those are left
-    /// out that say by which program it was computed, and those that its program did not have.
+    /// The columns in which this published row differs in a bit from the same row computed again. Columns that name the
+    /// program are left out, and columns that its program did not have.
     pub fn differences(&self, computed: &Self) -> Vec<RowDifference> {
         let number = |row: &Self, name: &str| row.table().reals(name).map_or(f64::NAN, |it| it[0]);
         let is_older = number(self, "late_periods").is_nan();

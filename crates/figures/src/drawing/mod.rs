@@ -217,7 +217,7 @@ impl Drawing {
         self.svg_with_prefix("")
     }
 
-    /// The same with every `id` beginning with a prefix, so that many figures can stand in one web page without sharing
+    /// As [`Drawing::svg`], with every `id` beginning with a prefix, so that many figures can stand in one web page without sharing
     /// an `id`; characters other than ASCII letters, digits, `-` and `_` become `-`.
     ///
     /// Without a prefix an `id` is made from what it names, so figures that share one mean the same by it.

@@ -120,7 +120,7 @@ impl TrajectoryFormat {
     /// Every format.
     pub const ALL: [Self; 3] = [Self::Gsd, Self::Vtp, Self::Lammps];
 
-    /// The file in a folder that a reader opens; that of the contacts in VTP is beside its own.
+    /// The file in a folder that a reader opens. In VTP the file of the contacts stands beside it.
     pub fn file_name(self) -> &'static str {
         match self {
             Self::Gsd => gsd::FILE,
@@ -134,7 +134,7 @@ impl TrajectoryFormat {
         self == Self::Vtp
     }
 
-    /// Begins a trajectory of about so many frames in a folder, over an older one.
+    /// Begins a trajectory of about `frames` frames in a folder, over an older one.
     ///
     /// # Errors
     /// [`FormatError::Io`].
@@ -150,7 +150,7 @@ impl TrajectoryFormat {
         self.create_at(&path, frames)
     }
 
-    /// Begins a trajectory of about so many frames in a file of any name, over an older one; in VTP in a folder.
+    /// Begins a trajectory of about `frames` frames in a file of any name, over an older one; VTP takes a folder.
     ///
     /// # Errors
     /// [`FormatError::Io`].
@@ -182,7 +182,7 @@ impl TrajectoryFormat {
         }
     }
 
-    /// The format of files whose names end so.
+    /// The format of files whose names end with `ending`.
     pub fn by_ending(ending: &str) -> Option<Self> {
         match ending {
             "gsd" => Some(Self::Gsd),
@@ -205,7 +205,7 @@ impl TrajectoryFormat {
         })
     }
 
-    /// Gives the trajectory in a folder room for so many frames in all, to the same bytes as if it had been made so.
+    /// Makes room for `frames` frames in all in the trajectory of a folder, to the same bytes as if it had been planned so.
     ///
     /// # Errors
     /// As [`TrajectoryFormat::resume`].

@@ -2,7 +2,7 @@
 
 use super::{Sums, WaveFrameProfile, standard_error, total};
 
-/// A part of the wavelength; what a proper part leaves is the wide half, or the rear.
+/// A part of the wavelength. The rest of `Narrow` is the wide half, the rest of `Front` the rear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WavePart {
     /// All of it.
@@ -13,9 +13,7 @@ pub enum WavePart {
     Front,
 }
 
-/// What happens in a part of the wave: along the wave, late means, each with its error.
-///
-/// The rest of the force on the grains of a wavelength acts outside this part.
+/// What happens in a part of the wave: late means, each with its error; forces and velocities are positive along the wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartOfWave {
     /// Axial force of the wall on the grains of the part along the normals of contacts \[m d/t^2\].

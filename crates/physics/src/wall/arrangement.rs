@@ -12,13 +12,13 @@ pub enum Arrangement {
     Staggered,
     /// In rings that are not turned: squares, where spacing and chord are equal; strain control.
     Aligned,
-    /// At random places that know nothing of each other, as many as in rings; strain control.
+    /// At independent random places, as many as in rings; strain control.
     Random,
-    /// At random places that keep the largest distance at which all find room one after another; strain control.
+    /// At random places, the largest distance apart at which all find room one after another; strain control.
     Disordered,
     /// At the angles and places of a table; strain control.
     File,
-    /// Nowhere: the wall is the smooth surface that they would make if there were ever more of them; strain control.
+    /// No spheres: the wall is the smooth surface that ever finer lattices approach; strain control.
     Smooth,
 }
 

@@ -3,7 +3,7 @@
 use super::Run;
 use crate::recorder::Lengths;
 
-/// A moment of a run to come back to: its state without the series of measurements before, which the run itself still has.
+/// A moment of a run to come back to: its state without the measurements before, which the run keeps.
 #[derive(Clone, Debug)]
 pub struct Mark {
     run: Run,

@@ -24,12 +24,11 @@ impl Run {
             .is_none_or(|schedule| schedule.rest() <= self.soonest())
     }
 
-    /// Leads a parameter of the drive to `value` within so many periods, linearly in time, beginning with the next step;
-    /// within 0 periods it jumps there, and what the wall does to the contacts that it then finds is booked as its work.
+    /// Leads a parameter of the drive to `value` within `periods` periods, linearly in time, beginning with the next step.
+    /// Within 0 periods it jumps there; what the jump does to the contacts counts as work of the wall.
     ///
-    /// The configuration keeps the course, so that a run from its start, or from a checkpoint, under the
-    /// [configuration](Run::configuration) as it is then takes the same course to the same bits. The value that the
-    /// parameter has already changes nothing, not by a bit.
+    /// The [configuration](Run::configuration) keeps the course: a run from its start, or from a checkpoint, takes the same
+    /// course to the same bits. A `value` that the parameter already has changes no bit.
     ///
     /// # Errors
     /// [`RunError::Steering`] for a value out of range, for a period shorter than a step, where the wave stands still (its

@@ -27,7 +27,7 @@ pub enum Field {
     Phase,
     /// Spheres that a grain touches, those of the wall included.
     Coordination,
-    /// Mean normal stress by the contacts' normal forces, sum f_n r/(3 V_i), r from the centre to the contact.
+    /// Mean normal stress from the normal forces of its contacts, sum f_n r/(3 V_i), r the distance from its centre to the contact.
     Pressure,
 }
 

@@ -75,7 +75,7 @@ pub struct Look {
     pub aspect: Aspect,
     /// What colours the grains.
     pub field: Field,
-    /// Values of the first and the last colour; those that suit the field unless given.
+    /// Values of the first and the last colour; unless given, values that suit the field.
     pub range: Option<(f64, f64)>,
     /// How the wall looks.
     pub wall: WallLook,
@@ -184,8 +184,8 @@ pub struct PictureScene {
 }
 
 impl PictureScene {
-    /// Prepares to draw a run. `samples` are instants, one at least, from which the room and the range of colours follow
-    /// that all pictures share; the first is what displacements are counted from.
+    /// Prepares to draw a run. From `samples`, one instant at least, follow the room and the range of colours that all
+    /// pictures share; displacements count from the first.
     ///
     /// # Errors
     /// [`RunError::Picture`] where the look is not possible for this run.

@@ -14,9 +14,9 @@ pub struct MixedGrains {
     pub axial: (f64, f64),
     /// Across it, [`Mixing::radial`].
     pub radial: (f64, f64),
-    /// End of the first period in which M along the tube has come to 1/2 \[t\].
+    /// End of the first period in which M along the tube reaches 1/2 \[t\].
     pub axial_time: Option<f64>,
-    /// The same across it \[t\].
+    /// End of the first period in which M across it reaches 1/2 \[t\].
     pub radial_time: Option<f64>,
 }
 

@@ -21,9 +21,9 @@ pub struct Discharge {
     pub discharged: f64,
     /// Grains that have gone from the inlet to the outlet in the whole run.
     pub passed: u64,
-    /// Mean time that they took, and its error; NaN of too few.
+    /// Mean transit time of these grains, and its error; NaN of too few.
     pub transit_time: (f64, f64),
-    /// Variance of that time.
+    /// Variance of the transit time.
     pub transit_time_variance: f64,
     /// Volume of the grains discharged in a period over the clear volume of a wavelength; `None` of a static wave.
     pub refill_efficiency: Option<(f64, f64)>,

@@ -141,7 +141,7 @@ impl ForceOfContacts {
 pub struct Wear {
     /// Power that grains lose where they slide on the wall, sum of -f_t . v_t over these contacts.
     pub power: (f64, f64),
-    /// The same per area 2 pi R dz of the wall. Each place of a periodic tube sees all of the wave, and bears this on average.
+    /// The power per area 2 pi R dz of the wall. Every place of a periodic tube sees the whole wave, and bears this on average.
     pub power_per_area: (f64, f64),
 }
 

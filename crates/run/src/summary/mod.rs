@@ -72,14 +72,14 @@ pub struct Summary {
     pub discharge: Option<Discharge>,
     /// Late mean of the pressure on the wall \[m/(d t^2)\].
     pub wall_pressure: f64,
-    /// Largest late mean of it over the phases of the wave, each a bin of the profile wide \[m/(d t^2)\].
+    /// Late mean of the pressure on the wall in the bin of the profile where it is largest \[m/(d t^2)\].
     pub wall_pressure_largest: f64,
     /// Sliding of the grains on the wall, where there is friction.
     pub wear: Option<Wear>,
     /// W/(2 pi) for the late mean work W of the wall or drive in a period, and its error: the torque of a shaft that makes one
     /// wave a turn \[m d^2/t^2\]; `None` of a static wave.
     pub wall_torque: Option<(f64, f64)>,
-    /// How the grains mixed; `None` of too few, or of an open tube.
+    /// How the grains mixed; `None` below 20 grains, or of an open tube.
     pub mixed: Option<MixedGrains>,
     /// Where grains of several sizes gathered.
     pub segregated: SegregatedSizes,
@@ -236,7 +236,8 @@ impl Summary {
         Some((in_si(rate)?, in_si(error)?))
     }
 
-    /// Late mean of the mass between the ends of an open tube and its error \[kg\]; `None` as there.
+    /// Late mean of the mass between the ends of an open tube and its error \[kg\]; `None` of a periodic one, or where the
+    /// configuration does not say its units.
     pub fn hold_up_in_si(&self) -> Option<(f64, f64)> {
         let (mass, error) = self.discharge?.hold_up;
         Some((

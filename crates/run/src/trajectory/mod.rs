@@ -35,7 +35,7 @@ pub struct Trajectory {
 /// What was written of a trajectory.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct TrajectoryReport {
-    /// The files that readers open; what in a name is no text is written with marks in its place.
+    /// The files that readers open; bytes of a name that are not Unicode are replaced by marks.
     #[serde(serialize_with = "as_text")]
     pub files: Vec<PathBuf>,
     /// Frames.

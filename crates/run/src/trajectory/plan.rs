@@ -183,7 +183,7 @@ impl TrajectoryPlan {
         Ok(plan)
     }
 
-    /// The frames from step `now` on, that of `now` included, for so long.
+    /// The frames from step `now` on, included, over `duration`.
     ///
     /// # Errors
     /// As [`TrajectoryPlan::new`].

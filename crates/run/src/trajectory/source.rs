@@ -167,7 +167,7 @@ impl FrameSource {
         }
     }
 
-    /// Instants that tell what the frames will need of room and colours: the first, and the last where it is known.
+    /// Instants from which room and colours of all frames follow: the first, and the last where it is known.
     ///
     /// # Errors
     /// As [`FrameSource::step`].

@@ -10,7 +10,7 @@ pub struct Warning {
 }
 
 impl Warning {
-    /// The same under a circumstance.
+    /// This warning under a circumstance.
     #[must_use]
     pub fn under(self, circumstance: &str) -> Self {
         Self {

@@ -31,7 +31,7 @@ pub struct Board {
 /// A run in progress.
 #[derive(Clone, Debug)]
 pub struct Working {
-    /// Which.
+    /// The run.
     pub identity: Identity,
     /// Its point in words.
     pub point: String,

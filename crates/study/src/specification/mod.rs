@@ -162,7 +162,7 @@ impl Specification {
         &self.plan
     }
 
-    /// A study of some of the runs of a plan of this one, and of no others: it is not refined.
+    /// A study of the runs of `plan` for which `is_in` holds; it is not refined.
     pub fn part(&self, plan: &Plan, is_in: impl Fn(&PlannedRun) -> bool) -> Self {
         Self {
             refinement: None,

@@ -18,7 +18,7 @@ use crate::store::run_files::RunFiles;
 pub struct Packed {
     /// Runs in it.
     pub runs: usize,
-    /// Runs that were taken over: of an import, those that were not finished here and whose hashes check.
+    /// Runs that were taken over. An import takes runs that were not finished here and whose hashes check.
     pub taken: usize,
 }
 

@@ -18,7 +18,7 @@ pub struct Verification {
     pub whole: usize,
     /// Finished runs with an imported row and no files.
     pub imported: usize,
-    /// Runs that were not what had been sealed, with what was wrong; their files were moved aside.
+    /// Runs whose files differ from their seal, with what was wrong; the files were moved aside.
     pub quarantined: Vec<(Identity, String)>,
     /// Runs that can go on from a checkpoint.
     pub checkpointed: usize,

@@ -27,7 +27,7 @@ pub struct Exported {
     pub leaking: usize,
     /// Runs of the plan that are not finished.
     pub missing: usize,
-    /// Runs that turned out not to be what had been sealed; they were moved aside, and are missing.
+    /// Runs whose files differ from their seal; they were moved aside, and are missing.
     pub quarantined: Vec<(Identity, String)>,
 }
 

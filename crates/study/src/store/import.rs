@@ -16,8 +16,8 @@ use crate::row::Row;
 impl Store {
     /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many it has.
     ///
-    /// The table is copied into the store. A run that is finished here stays as it is. A row that says other parameters than
-    /// the study's run of its identity has is refused, and with it the table.
+    /// The table is copied into the store. A run that is finished here stays as it is. The table is
+    /// refused if a row has other parameters than the study's run of its identity.
     ///
     /// # Errors
     /// [`StudyError::NotRows`] and errors of reading.

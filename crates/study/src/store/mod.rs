@@ -166,7 +166,7 @@ impl Store {
         self.file(RUNS).join(identity.to_string())
     }
 
-    /// Whether the products of a finished run are here: of one that was imported there may be its row only.
+    /// Whether the products of a finished run are here; an imported run may have only its row.
     pub fn holds_products(&self, identity: Identity) -> bool {
         self.run_files(identity).is_sealed()
     }

@@ -25,7 +25,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// What has become of a run.
+    /// The state of a run.
     pub fn state(&self, identity: Identity) -> State {
         match self.entries.get(&identity).map(|entry| entry.state) {
             Some(State::Done) => State::Done,
@@ -84,7 +84,7 @@ impl Survey {
         finding(&self.entries, identity)
     }
 
-    /// The run whose identity begins so, in the plan or not.
+    /// The run whose identity begins with `prefix`, in the plan or not.
     ///
     /// # Errors
     /// [`StudyError::NoSuchRun`] unless there is exactly one.

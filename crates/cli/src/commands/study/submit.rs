@@ -49,10 +49,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
         None => PathBuf::from(format!("{}.sbatch", study.name)),
     };
     say_if_replaced(&path);
-    std::fs::write(&path, script).map_err(|source| Failure::Write {
-        path: path.clone(),
-        source,
-    })?;
+    std::fs::write(&path, script).map_err(Failure::write(&path))?;
     print(&format!(
         "{} asks for {} of {} for {}\n\
          submit it with: sbatch {}\n\
