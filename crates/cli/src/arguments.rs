@@ -78,11 +78,11 @@ pub(crate) struct ConfigurationArguments {
     /// Sets a key, such as drive.width=2.7, whatever preset and file say; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// How long to run, in periods of the wave: run.periods, of drive.strain_rate where the rate changes. With --resume, the
-    /// length of the whole run; a complete one becomes longer, to the same bits as if it had been asked for at once.
+    /// Length of the run in periods of the wave (run.periods); where a schedule changes the rate, of drive.strain_rate.
+    /// `run --resume` takes the new length of the whole run, to the same bits as one run of that length.
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) periods: Option<f64>,
-    /// The same in time [t]: run.duration.
+    /// Length of the run in time [t] (run.duration).
     #[arg(long, value_name = "T", conflicts_with = "periods", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
 }

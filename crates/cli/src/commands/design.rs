@@ -19,12 +19,12 @@ use crate::stop::Stop;
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "FILE says grain, tube and drive in SI (--keys lists the keys), or is a configuration. What is outside the published runs is said, and nothing is expected there."
+    after_help = "FILE gives grain, tube and drive in SI (--keys lists the keys), or is a configuration. The report names what lies outside the published runs, and expects nothing there."
 )]
 pub(crate) struct DesignArguments {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArguments,
-    /// Write the configuration that computes it to this file, for `run`.
+    /// Write the configuration of the pump to this file, for `run` to compute.
     #[arg(long, value_name = "FILE")]
     pub(crate) write: Option<PathBuf>,
     /// Write the report as a page to this file.
