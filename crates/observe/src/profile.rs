@@ -190,8 +190,7 @@ pub struct ProfileBin {
     /// Shear on the wall along the wave, with its error \[m/(d t^2)\]: the axial force on the wall per area 2 pi R dz
     /// without that of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.
     pub wall_shear: (f64, f64),
-    /// Power that grains lose where they slide on the wall, sum of -f_t . v_t, per area 2 pi R dz, with its error
-    /// \[m/t^3\].
+    /// Power that grains lose where they slide on the wall, per area 2 pi R dz, with its error \[m/t^3\].
     pub wall_wear: (f64, f64),
     /// Mean axial velocity of the spheres of the wall, along the wave, with its error \[d/t\]; 0 for a prescribed wall.
     pub wall_axial_velocity: (f64, f64),

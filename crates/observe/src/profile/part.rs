@@ -20,7 +20,7 @@ pub struct PartOfWave {
     pub normal_force: (f64, f64),
     /// The same by friction \[m d/t^2\].
     pub tangential_force: (f64, f64),
-    /// Power that its grains lose where they slide on the wall, sum of -f_t . v_t \[m d^2/t^3\].
+    /// Power that its grains lose where they slide on the wall \[m d^2/t^3\].
     pub sliding_power: (f64, f64),
     /// Mean axial velocity of its grains, laboratory frame \[d/t\].
     pub axial_velocity: (f64, f64),

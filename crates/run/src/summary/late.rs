@@ -16,31 +16,28 @@ pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
 
 /// Late mean of J/Jmax and its error; NaN where the wave stands all the time.
 ///
-/// Where the wave pauses there is no Jmax: then it is the mean of J over that of Jmax = N c/L, c being the wavelengths run
-/// in the time of all samples but the first. What flows while the wave stands counts.
-pub(super) fn flow_rate_ratio(late: &[Sample], waves: f64) -> (f64, f64) {
+/// Where the wave pauses there is no Jmax: then it is the mean of J over that of Jmax = N c/L, c being the mean speed of the
+/// wave. What flows while the wave stands counts. `length` is L, between the ends of an open tube \[lambda\].
+pub(super) fn flow_rate_ratio(samples: &[Sample], late: &[Sample], length: f64) -> (f64, f64) {
     let ratios = super::ratios_of(late);
-    let pauses = ratios.iter().any(|ratio| ratio.is_nan());
-    let run = |part: &[Sample]| {
-        let (first, last) = (part.first()?, part.last()?);
-        let run = last.period - first.period;
-        (run > 0.0).then(|| waves * (last.time - first.time) / run)
-    };
-    match run(late).filter(|_| pauses) {
-        Some(per_wave) => {
-            let rest = &late[1..];
-            let scale = per_wave / mean_of(rest, |sample| sample.inside);
-            let flows = || rest.iter().map(|sample| scale * sample.flow_rate);
-            (
-                mean_of(rest, |sample| scale * sample.flow_rate),
-                error_of(flows()),
-            )
-        }
-        None => match mean_with_error(&ratios) {
-            Ok(estimate) => (estimate.mean, estimate.error),
-            Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
-        },
+    let frequency = frequency(samples, late);
+    if frequency > 0.0 && ratios.iter().any(|ratio| ratio.is_nan()) {
+        let most = frequency * mean_of(late, |sample| sample.inside) / length;
+        let flow = |sample: &Sample| sample.flow_rate / most;
+        return (mean_of(late, flow), error_of(late.iter().map(flow)));
     }
+    match mean_with_error(&ratios) {
+        Ok(estimate) => (estimate.mean, estimate.error),
+        Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
+    }
+}
+
+/// Mean frequency at which waves passed in the time of the late samples \[1/t\].
+fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
+    let early = &samples[..samples.len() - late.len()];
+    let of = |sample: Option<&Sample>| sample.map_or((0.0, 0.0), |it| (it.period, it.time));
+    let (before, after) = (of(early.last()), of(late.last()));
+    (after.0 - before.0) / (after.1 - before.1)
 }
 
 /// Late mean of what flows against the wave, over J: the mean of -J where J < 0, each over the time of a sample, \[1/t\].
@@ -139,27 +136,28 @@ impl ForceOfContacts {
 /// By Archard's law the volume that a wall loses is its coefficient of wear, over hardness and friction, times this work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wear {
-    /// Power that grains lose where they slide on the wall, sum of -f_t . v_t over these contacts.
+    /// Power that grains lose where they slide on the wall, without what tangential springs take up and give back.
     pub power: (f64, f64),
-    /// The power per area 2 pi R dz of the wall. Every place of a periodic tube sees the whole wave, and bears this on average.
+    /// The power per area 2 pi R dz of the wall, between its ends. Every place of a periodic tube sees the whole wave, and
+    /// bears this on average.
     pub power_per_area: (f64, f64),
 }
 
 impl Wear {
-    /// From a wavelength's profile; `None` without friction.
+    /// From a wavelength's profile of a tube of this length \[d\]; `None` without friction.
     pub(super) fn of(
         configuration: &Configuration,
+        length: f64,
         whole: &PartOfWave,
         profile: &[ProfileBin],
     ) -> Option<Self> {
         configuration.contact.friction?;
-        let (power, error) = whole.sliding_power;
-        let tube = &configuration.tube;
-        let waves = f64::from(tube.waves);
+        let waves = f64::from(configuration.tube.waves);
+        let (power, error) = (waves * whole.sliding_power.0, waves * whole.sliding_power.1);
         let radius = profile.iter().map(|bin| bin.radius).sum::<f64>() / profile.len() as f64;
-        let area = TAU * radius * tube.wavelength;
+        let area = TAU * radius * length;
         Some(Self {
-            power: (waves * power, waves * error),
+            power: (power, error),
             power_per_area: (power / area, error / area),
         })
     }
@@ -168,10 +166,7 @@ impl Wear {
 /// P/(2 pi f) for the late mean power P of the wall or drive and the mean frequency f at which waves passed then, and its
 /// error \[m d^2/t^2\]; `None` of a wave that stood.
 pub(super) fn wall_torque(samples: &[Sample], late: &[Sample]) -> Option<(f64, f64)> {
-    let early = &samples[..samples.len() - late.len()];
-    let of = |sample: Option<&Sample>| sample.map_or((0.0, 0.0), |it| (it.period, it.time));
-    let (before, after) = (of(early.last()), of(late.last()));
-    let frequency = (after.0 - before.0) / (after.1 - before.1);
+    let frequency = frequency(samples, late);
     let per_power = 1.0 / (TAU * frequency);
     let power = mean_of(late, |sample| sample.wall_power);
     let error = error_of(late.iter().map(|sample| sample.wall_power));

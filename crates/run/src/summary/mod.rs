@@ -125,7 +125,8 @@ impl Summary {
         let late_intervals = late.len() as u64 * recorder.intervals();
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let of_period = (samples_per_period / recorder.intervals()).max(1) as usize;
-        let flow_rate_ratio = late::flow_rate_ratio(late, configuration.tube.waves.into());
+        let length = simulation.length();
+        let in_waves = length / configuration.tube.wavelength;
         let profile = late_profile(run);
         let part = |part| recorder.profile().late_part(fraction, part);
         let whole = part(WavePart::Whole);
@@ -135,7 +136,7 @@ impl Summary {
         Self {
             status,
             message,
-            flow_rate_ratio,
+            flow_rate_ratio: late::flow_rate_ratio(samples, late, in_waves),
             transition_time: recorder.transition_time(),
             transition_times: recorder.transition_times(),
             newtonian: newtonian_reference(configuration),
@@ -147,7 +148,7 @@ impl Summary {
             discharge: Discharge::of(run, late),
             wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
             wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
-            wear: Wear::of(configuration, &whole, &profile),
+            wear: Wear::of(configuration, length, &whole, &profile),
             wall_torque: wall_torque(samples, late),
             mixed: MixedGrains::of(samples, late, of_period),
             segregated: SegregatedSizes::of(late, of_period),
@@ -206,44 +207,25 @@ impl Summary {
         }
     }
 
-    /// The units of the configuration, if it says them.
-    pub fn units(&self) -> Option<&Units> {
-        self.configuration.units.as_ref()
-    }
-
     /// A number in SI, by the SI value of its unit; `None` where the configuration does not say its units.
     pub fn in_si(&self, value: f64, unit: fn(&Units) -> f64) -> Option<f64> {
-        Some(value * unit(self.units()?))
+        Some(value * unit(self.configuration.units.as_ref()?))
+    }
+
+    /// The same of a number and its error.
+    pub fn measured_in_si(
+        &self,
+        (value, error): (f64, f64),
+        unit: fn(&Units) -> f64,
+    ) -> Option<(f64, f64)> {
+        Some((self.in_si(value, unit)?, self.in_si(error, unit)?))
     }
 
     /// Late mean of the mass that flows and its error \[kg/s\]; `None` where the configuration does not say its units.
     pub fn mass_flow_rate_in_si(&self) -> Option<(f64, f64)> {
         let mass = self.configuration.mean_grain_mass();
         let error = error_of(self.late.iter().map(|sample| sample.flow_rate));
-        let in_si = |flow: f64| self.in_si(mass * flow, Units::mass_flow);
-        Some((in_si(self.flow_rate())?, in_si(error)?))
-    }
-
-    /// Late mean of the mass that an open tube discharges and its error \[kg/s\]; `None` of a periodic one, or where the
-    /// configuration does not say its units.
-    pub fn discharge_rate_in_si(&self) -> Option<(f64, f64)> {
-        self.mass_rate_in_si(self.discharge?.rate)
-    }
-
-    /// A mass per time and its error \[m/t\] in SI \[kg/s\]; `None` where the configuration does not say its units.
-    pub fn mass_rate_in_si(&self, (rate, error): (f64, f64)) -> Option<(f64, f64)> {
-        let in_si = |rate: f64| self.in_si(rate, Units::mass_flow);
-        Some((in_si(rate)?, in_si(error)?))
-    }
-
-    /// Late mean of the mass between the ends of an open tube and its error \[kg\]; `None` of a periodic one, or where the
-    /// configuration does not say its units.
-    pub fn hold_up_in_si(&self) -> Option<(f64, f64)> {
-        let (mass, error) = self.discharge?.hold_up;
-        Some((
-            self.in_si(mass, Units::mass)?,
-            self.in_si(error, Units::mass)?,
-        ))
+        self.measured_in_si((mass * self.flow_rate(), mass * error), Units::mass_flow)
     }
 
     /// Late mean of the normal force that 99 % of the contacts of grains do not exceed, and the largest

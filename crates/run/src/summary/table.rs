@@ -182,7 +182,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("transit_time", "t", "mean time from the inlet to the outlet of the grains that have gone all the way in the run", OptionalMeasured(|s| s.discharge.map(|it| it.transit_time))).at("open.transit_time").labelled("transit time"),
     result("transit_time_variance", "t^2", "variance of that time", Optional(|s| s.discharge.map(|it| it.transit_time_variance))).at("open.transit_time_variance").labelled("variance of the transit time"),
     result("refill_efficiency", "1", "volume of the grains discharged in a period over the clear volume of a wavelength; missing for a static wave", OptionalMeasured(|s| s.discharge?.refill_efficiency)).at("open.refill_efficiency").labelled("refill efficiency"),
-    result("discharge_rate_si", "kg/s", "discharge_rate in SI; missing without the table units", OptionalMeasured(|s| s.discharge_rate_in_si())).at("si.discharge_rate_kg_per_s"),
+    result("discharge_rate_si", "kg/s", "discharge_rate in SI; missing without the table units", OptionalMeasured(|s| s.measured_in_si(s.discharge?.rate, Units::mass_flow))).at("si.discharge_rate_kg_per_s"),
     result("mass_flow_rate_si", "kg/s", "late mean flow J m; missing without the table units", OptionalMeasured(|s| s.mass_flow_rate_in_si())).at("si.mass_flow_rate_kg_per_s"),
     result("wall_power_si", "W", "wall_power in SI; missing without the table units", Optional(|s| s.in_si(s.wall_power(), Units::power))).at("si.wall_power_w"),
     result("useful_power_si", "W", "useful_power in SI; missing without the table units", Optional(|s| s.in_si(s.pumping?.useful_power.0, Units::power))).at("si.useful_power_w"),

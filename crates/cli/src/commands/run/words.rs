@@ -93,7 +93,7 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         let torque = torque.unwrap_or_default();
         flow.push_str(&format!(
             "\nin SI: {} kg/h, wall power {} W{torque}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
-            plain_text(&with_error(3600.0 * mass_flow, 3600.0 * error)),
+            measured((3600.0 * mass_flow, 3600.0 * error)),
             number(power),
             number(pressure),
             number(largest),
@@ -136,21 +136,28 @@ fn wear(summary: &Summary) -> String {
     let Some(wear) = summary.wear.filter(|wear| wear.power.0 > 0.0) else {
         return String::new();
     };
-    let measured = |(value, error)| plain_text(&with_error(value, error));
-    let in_si = |pair: (f64, f64), unit: &dyn Fn(&Units) -> f64| {
-        let units = summary.units()?;
-        Some(measured((pair.0 * unit(units), pair.1 * unit(units))))
-    };
-    let per_area = |units: &Units| units.pressure() * units.velocity();
-    let power = in_si(wear.power, &Units::power);
-    let (power, per_area) = match (power, in_si(wear.power_per_area, &per_area)) {
-        (Some(power), Some(per_area)) => (format!("{power} W"), format!("{per_area} W/m^2")),
-        _ => (
-            format!("{} m d^2/t^3", measured(wear.power)),
-            format!("{} m/t^3", measured(wear.power_per_area)),
-        ),
-    };
+    let power = told(summary, wear.power, Units::power, ["W", "m d^2/t^3"]);
+    let unit = |units: &Units| units.pressure() * units.velocity();
+    let per_area = told(summary, wear.power_per_area, unit, ["W/m^2", "m/t^3"]);
     format!("\nwear: sliding on the wall takes {power}, {per_area} of wall")
+}
+
+/// A number with its error.
+fn measured((value, error): (f64, f64)) -> String {
+    plain_text(&with_error(value, error))
+}
+
+/// The same in SI, or else in the units of the run.
+fn told(
+    summary: &Summary,
+    pair: (f64, f64),
+    unit: fn(&Units) -> f64,
+    [si, own]: [&str; 2],
+) -> String {
+    match summary.measured_in_si(pair, unit) {
+        Some(pair) => format!("{} {si}", measured(pair)),
+        None => format!("{} {own}", measured(pair)),
+    }
 }
 
 /// How far the grains are mixed, once a period has passed.
@@ -158,7 +165,6 @@ fn mixing(run: &Run, summary: &Summary) -> String {
     let Some(mixed) = summary.mixed.filter(|_| run.recorder().periods() > 0) else {
         return String::new();
     };
-    let measured = |(value, error)| plain_text(&with_error(value, error));
     let since = |time: Option<f64>| {
         let rate = run.configuration().drive.strain_rate;
         time.map(|time| match rate > 0.0 {
@@ -189,7 +195,7 @@ fn segregation(run: &Run, summary: &Summary) -> String {
     let gathered = places.into_iter().filter_map(|(found, [above, below])| {
         let (correlation, error) = found?;
         let place = if correlation > 0.0 { above } else { below };
-        let size = plain_text(&with_error(correlation.abs(), error));
+        let size = measured((correlation.abs(), error));
         (correlation.abs() > by_chance).then(|| format!("{place} ({size})"))
     });
     match gathered.collect::<Vec<_>>().as_slice() {
@@ -203,19 +209,15 @@ fn segregation(run: &Run, summary: &Summary) -> String {
 
 /// What passes through an open tube.
 fn through(discharge: &Discharge, summary: &Summary) -> String {
-    let measured = |(value, error)| plain_text(&with_error(value, error));
-    let in_words = |rate| match summary.mass_rate_in_si(rate) {
-        Some((rate, error)) => format!("{} kg/h", measured((3600.0 * rate, 3600.0 * error))),
-        None => format!("{} m/t", measured(rate)),
+    let flow = |rate| {
+        let per_hour = |units: &Units| 3600.0 * units.mass_flow();
+        told(summary, rate, per_hour, ["kg/h", "m/t"])
     };
-    let rate = in_words(discharge.rate);
-    let hold_up = match summary.hold_up_in_si() {
-        Some(mass) => format!("{} kg are", measured(mass)),
-        None => format!("a mass of {} m is", measured(discharge.hold_up)),
-    };
-    let mut text = format!("\nthe outlet discharges {rate}; {hold_up} between the ends");
+    let rate = flow(discharge.rate);
+    let hold_up = told(summary, discharge.hold_up, Units::mass, ["kg", "m"]);
+    let mut text = format!("\nthe outlet discharges {rate}; the tube holds {hold_up}");
     if discharge.return_rate.0 > 0.0 {
-        let back = in_words(discharge.return_rate);
+        let back = flow(discharge.return_rate);
         text.push_str(&format!("; {back} go back through the inlet"));
     }
     if let Some(part) = discharge.refill_efficiency {
