@@ -50,7 +50,7 @@ impl Kinds {
         let view = View::of(simulation);
         let second_half = |place: &dyn Fn(usize) -> f64| {
             let mut is_second = vec![false; grains];
-            for &grain in &in_order((0..grains).collect(), place)[grains / 2..] {
+            for &grain in &in_order(0..grains, place)[grains / 2..] {
                 is_second[grain] = true;
             }
             is_second
@@ -75,49 +75,28 @@ impl Mixing {
         if kinds.behind.is_empty() {
             return None;
         }
-        let inside = view.inside.iter().enumerate();
-        let inside: Vec<usize> = inside
-            .filter_map(|(i, &inside)| inside.then_some(i))
-            .collect();
-        let moved = |&grain: &usize| observer.unfolded[grain] - observer.start[grain];
-        let mean = inside.iter().map(moved).sum::<f64>() / inside.len() as f64;
+        let inside = || (0..view.inside.len()).filter(|&grain| view.inside[grain]);
+        let moved = |grain: usize| observer.unfolded[grain] - observer.start[grain];
+        let mean = inside().map(moved).sum::<f64>() / inside().count() as f64;
         let length = view.simulation.length();
         let along = |grain: usize| (observer.unfolded[grain] - mean).rem_euclid(length);
+        let radial = |grain: usize| view.radial_place(grain);
         Some(Self {
-            axial: index(&in_order(inside.clone(), &along), &kinds.behind)?,
-            radial: index(
-                &in_order(inside, &|grain| view.radial_place(grain)),
-                &kinds.outer,
-            )?,
+            axial: index(&in_order(inside(), &along), &kinds.behind)?,
+            radial: index(&in_order(inside(), &radial), &kinds.outer)?,
         })
     }
 }
 
 /// Grains in the order of a coordinate, of equal ones in their own.
-fn in_order(mut grains: Vec<usize>, place: &dyn Fn(usize) -> f64) -> Vec<usize> {
-    grains.sort_by_cached_key(|&grain| Ordered(place(grain)));
-    grains
+fn in_order(grains: impl Iterator<Item = usize>, place: &dyn Fn(usize) -> f64) -> Vec<usize> {
+    let mut placed: Vec<(f64, usize)> = grains.map(|grain| (place(grain), grain)).collect();
+    placed.sort_by(|one, other| one.0.total_cmp(&other.0));
+    placed.into_iter().map(|(_, grain)| grain).collect()
 }
 
-/// A coordinate that can be sorted by.
-#[derive(PartialEq)]
-struct Ordered(f64);
-
-impl Eq for Ordered {}
-
-impl PartialOrd for Ordered {
-    fn partial_cmp(&self, other: &Self) -> Option<core::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Ordered {
-    fn cmp(&self, other: &Self) -> core::cmp::Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
-/// M of grains, at least 20, that stand in the order of the cells; `is_second` says which kind a grain is of.
+/// M of grains that stand in the order of the cells; `is_second` says which kind a grain is of. None of less than 20, nor of one
+/// kind alone.
 fn index(grains: &[usize], is_second: &[bool]) -> Option<f64> {
     let number = grains.len();
     let cells = (number / IN_A_CELL).min(CELLS) / 2 * 2;
@@ -129,13 +108,17 @@ fn index(grains: &[usize], is_second: &[bool]) -> Option<f64> {
         second as f64 / grains.len() as f64
     };
     let whole = part(grains);
+    let apart = whole * (1.0 - whole);
+    if apart == 0.0 {
+        return None;
+    }
     let squares = (0..cells).map(|cell| {
         let in_cell = &grains[cell * number / cells..(cell + 1) * number / cells];
-        let apart = part(in_cell) - whole;
-        in_cell.len() as f64 * apart * apart
+        let off = part(in_cell) - whole;
+        in_cell.len() as f64 * off * off
     });
     let variance = squares.sum::<f64>() / number as f64;
-    let (apart, number, cells) = (whole * (1.0 - whole), number as f64, cells as f64);
+    let (number, cells) = (number as f64, cells as f64);
     Some((1.0 - variance / apart) * (number - 1.0) / (number - cells))
 }
 
@@ -155,6 +138,8 @@ mod tests {
             );
         }
         assert_eq!(index(&[0, 1, 2], &[true, false, true]), None);
+        // Of one kind alone the others have left the tube.
+        assert_eq!(index(&Vec::from_iter(0..40), &[true; 40]), None);
     }
 
     /// Kinds that alternate: every cell of 10 holds 5 of each, s^2 = 0, and M = (N - 1)/(N - C), above 1 as what is laid out
