@@ -14,27 +14,12 @@ use crate::schema::{self, Choice};
 use crate::source::SourceFile;
 use crate::units;
 
-/// The key that says how diameters are distributed, and the keys of each of its values.
-pub(crate) const SIZES: &str = "grains.sizes";
-pub(crate) const KEYS_OF_SIZES: &[(&str, &[&str])] = &[
-    (
-        "lognormal",
-        &["grains.diameter_median", "grains.diameter_spread"],
-    ),
-    (
-        "two",
-        &["grains.large_fraction", "grains.large_volume_fraction"],
-    ),
-    (
-        "table",
-        &["grains.file", "grains.diameters", "grains.fractions"],
-    ),
-];
-
 /// A key whose value decides which other keys have a meaning.
 #[derive(Default)]
 struct Switch {
     key: String,
+    /// Its value where it is not given.
+    default: Option<&'static str>,
     /// Keys that belong to some of its values, with these values.
     owned: BTreeMap<String, Vec<String>>,
     /// Keys that are dropped whenever a higher layer changes the switch.
@@ -48,6 +33,22 @@ impl Switch {
             key,
             reset,
             ..Self::default()
+        }
+    }
+
+    /// A switch that has a value where it is not given.
+    fn by_default(key: &str, default: &'static str) -> Self {
+        Self {
+            default: Some(default),
+            ..Self::new(key, &[])
+        }
+    }
+
+    /// Its value in a table.
+    fn chosen<'a>(&self, table: &'a Table) -> Option<&'a str> {
+        match document::entry(table, &self.key) {
+            Some(_) => document::text(table, &self.key),
+            None => self.default,
         }
     }
 
@@ -72,7 +73,8 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
     let mut schedule = Switch::new("drive.schedule", &["drive.ramp_periods"]);
     schedule.owns("ramp", "drive.ramp_periods");
     switches.push(schedule);
-    let mut arrangement = Switch::new("tube.arrangement", &["tube.arrangement_seed"]);
+    let mut arrangement = Switch::by_default("tube.arrangement", "staggered");
+    arrangement.reset = &["tube.arrangement_seed"];
     for drawn in ["random", "disordered"] {
         arrangement.owns(drawn, "tube.arrangement_seed");
     }
@@ -85,19 +87,23 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
         }
     }
     switches.push(arrangement);
-    let mut sizes = Switch::new(SIZES, &[]);
-    for (form, keys) in KEYS_OF_SIZES {
-        for key in *keys {
-            sizes.owns(form, *key);
+    let mut sizes = Switch::by_default("grains.sizes", "uniform");
+    for (form, keys) in [
+        ("lognormal", &["diameter_median", "diameter_spread"][..]),
+        ("two", &["large_fraction", "large_volume_fraction"]),
+        ("table", &["file", "diameters", "fractions"]),
+    ] {
+        for key in keys {
+            sizes.owns(form, format!("grains.{key}"));
         }
     }
     switches.push(sizes);
-    let mut ends = Switch::new("tube.ends", &[]);
+    let mut ends = Switch::by_default("tube.ends", "periodic");
     for key in OPEN {
         ends.owns("open", key);
     }
     switches.push(ends);
-    let mut waveform = Switch::new("drive.waveform", &[]);
+    let mut waveform = Switch::by_default("drive.waveform", "sine");
     let segments = schema::of::<SegmentDrive>();
     for (name, _) in segments["properties"].as_object().into_iter().flatten() {
         waveform.owns("segments", format!("drive.{name}"));
@@ -157,12 +163,13 @@ pub(crate) fn is_smooth(table: &Table) -> bool {
     document::text(table, "tube.arrangement") == Some("smooth")
 }
 
-/// Whether a key has a meaning where the switches stand as they do in a table; a switch that is not set has no value.
+/// Whether a key has a meaning where the switches stand as they do in a table.
 pub(crate) fn has_meaning(table: &Table, key: &str) -> bool {
-    !SWITCHES.iter().any(|switch| {
-        let chosen = document::text(table, &switch.key);
-        switch.meaningless(chosen).any(|(owned, _)| owned == key)
-    })
+    let lacks_it = |switch: &Switch| {
+        let mut without = switch.meaningless(switch.chosen(table));
+        without.any(|(owned, _)| owned == key)
+    };
+    !SWITCHES.iter().any(lacks_it)
 }
 
 /// Lays `layer` over `base`.
@@ -274,10 +281,11 @@ pub fn join(overrides: Vec<Table>) -> Table {
 /// Refuses keys that belong to another value of a switch than the one chosen.
 pub(crate) fn check_switches(table: &Table, problems: &mut Problems) {
     for switch in &*SWITCHES {
-        let Some(choice) = document::entry(table, &switch.key) else {
+        let choice = document::entry(table, &switch.key);
+        if choice.is_none() && switch.default.is_none() {
             continue;
-        };
-        let (name, chosen) = (&switch.key, document::text(table, &switch.key));
+        }
+        let (name, chosen) = (&switch.key, switch.chosen(table));
         let here = chosen.map_or("a table".to_owned(), |chosen| format!("\"{chosen}\""));
         for (key, values) in switch.meaningless(chosen) {
             let Some(entry) = document::entry(table, key) else {
@@ -287,11 +295,13 @@ pub(crate) fn check_switches(table: &Table, problems: &mut Problems) {
             let values: Vec<&str> = values.iter().map(String::as_str).collect();
             let owner = format!("{name} = {}", list(&values, "or"));
             let message = format!("{key} belongs to {owner}, but here it is {here}");
-            let problem = Problem::new(ProblemKind::Conflict, message)
+            let mut problem = Problem::new(ProblemKind::Conflict, message)
                 .key(key)
                 .at(&entry.key, format!("has no meaning under this {name}"))
-                .at(&choice.item.origin, format!("{name} is chosen here"))
                 .help(format!("remove {key}, or set {owner}"));
+            if let Some(choice) = choice {
+                problem = problem.at(&choice.item.origin, format!("{name} is chosen here"));
+            }
             problems.push(problem);
         }
     }

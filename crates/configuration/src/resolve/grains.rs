@@ -9,7 +9,6 @@ use crate::configuration::Tube;
 use crate::error::ProblemKind;
 use crate::grains::Grains;
 use crate::keys::{GrainsKeys, NUMBERS};
-use crate::layers::{KEYS_OF_SIZES, SIZES};
 use crate::limits;
 
 /// The grains in a given tube.
@@ -64,18 +63,7 @@ fn sizes(grains: &mut Grains, by_volume: Option<f64>, context: &mut Context<'_>)
     let bounds @ [least, largest] = [grains.diameter_min, grains.diameter_max];
     let no_spread = least == largest;
     let message = match grains.sizes {
-        SizeForm::Uniform => {
-            let mut keys = KEYS_OF_SIZES
-                .iter()
-                .flat_map(|(form, keys)| keys.iter().map(move |key| (form, *key)));
-            let Some((form, key)) = keys.find(|(_, key)| context.given(key)) else {
-                return Some(());
-            };
-            let message =
-                format!("{key} belongs to {SIZES} = \"{form}\", but diameters are uniform");
-            let help = format!("remove {key}, or set {SIZES} = \"{form}\"");
-            return context.refuse(ProblemKind::Inconsistent, &[key], message, help);
-        }
+        SizeForm::Uniform => return Some(()),
         SizeForm::Lognormal if grains.diameter_spread.is_none() => {
             "lognormal diameters need grains.diameter_spread"
         }
@@ -119,7 +107,7 @@ fn sizes(grains: &mut Grains, by_volume: Option<f64>, context: &mut Context<'_>)
                 or grains.diameters and grains.fractions";
     context.refuse(
         ProblemKind::Inconsistent,
-        &[SIZES],
+        &["grains.sizes"],
         message.to_owned(),
         help.to_owned(),
     )

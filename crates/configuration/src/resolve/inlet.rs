@@ -6,7 +6,7 @@ use super::{Context, plain};
 use crate::configuration::{Configuration, Control};
 use crate::error::ProblemKind;
 use crate::grains::Grains;
-use crate::keys::{Keys, OPEN};
+use crate::keys::Keys;
 use crate::units::Units;
 
 const KIND: ProblemKind = ProblemKind::Inconsistent;
@@ -24,15 +24,7 @@ pub(super) fn inlet(
 ) -> Option<Option<Inlet>> {
     let tube = &keys.tube.tube;
     if tube.ends == Ends::Periodic {
-        return match OPEN.iter().find(|key| context.given(key)) {
-            Some(key) => context.refuse(
-                KIND,
-                &[key],
-                format!("{key} is of an open tube, and here the ends are joined"),
-                "tube.ends = \"open\"".into(),
-            ),
-            None => Some(None),
-        };
+        return Some(None);
     }
     if let Control::Stress { .. } = keys.drive.drive.control {
         return context.refuse(

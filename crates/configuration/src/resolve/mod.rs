@@ -19,7 +19,7 @@ use crate::configuration::{Configuration, Control, FIRST_SEED, Wall};
 use crate::contract;
 use crate::document::{self, Table};
 use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
-use crate::keys::{ALTERNATIVES, Keys, RINGS};
+use crate::keys::{ALTERNATIVES, Keys};
 use crate::layers::{self, list};
 use crate::materials;
 use crate::presets::{PRESETS, Preset, preset};
@@ -251,8 +251,7 @@ fn check_given(table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
 fn missing(table: &Table) -> Vec<String> {
     let given = |key: &str| document::entry(table, key).is_some();
     let mut missing = schema::REQUIRED.to_vec();
-    let is_smooth = layers::is_smooth(table);
-    missing.retain(|key| !(given(key) || is_smooth && RINGS.contains(&key.as_str())));
+    missing.retain(|key| !given(key) && layers::has_meaning(table, key));
     let groups = ALTERNATIVES.iter().filter(|group| {
         layers::has_meaning(table, group[0]) && !group.iter().any(|key| given(key))
     });
@@ -369,7 +368,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     };
     let contact = match (contact, &units) {
         (Some(contact), Some(units)) => {
-            contact::with_cohesion_in_si(contact, &keys.units, units.as_ref(), context)
+            contact::with_cohesion(contact, &keys, units.as_ref(), context)
         }
         _ => None,
     };

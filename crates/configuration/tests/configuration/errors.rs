@@ -33,6 +33,8 @@ width = 2.75 -> widht = 2.75\n& | UnknownKey | drive.widht | 13 | did you mean d
 [grains] -> [grain]\n& | UnknownKey | grain | 1 | did you mean grains?
 waves = 10 -> &\narrangement = "random"\narrangement_seed = -1 | OutOfRange | tube.arrangement_seed | 10 | 0 or more
 waves = 10 -> &\narrangement = "aligned"\narrangement_seed = 2 | Conflict | tube.arrangement_seed | 10 | arrangement = "random" or "disordered"
+waves = 10 -> &\narrangement_seed = 2 | Conflict | tube.arrangement_seed | 9 | arrangement = "random" or "disordered" | here it is "staggered"
+waves = 10 -> &\nplaces = [0] | Conflict | tube.places | 9 | arrangement = "file"
 waves = 10 -> &\narrangement = "file" | Inconsistent | tube.places | 9 | give tube.file | no sphere
 waves = 10 -> &\narrangement = "file"\nangles = [0]\nplaces = [0, 5] | Inconsistent | tube.places | 11 10 9 | one of both | 1 angles and 2 places
 waves = 10 -> &\narrangement = "file"\nangles = [0, 1]\nplaces = [0, 100.0] | Inconsistent | tube.places | 11 10 9 | 0 <= z < L = waves * wavelength = 100 | wall sphere 2

@@ -180,8 +180,7 @@ fn sizes_of_every_form_read_back() {
 fn sizes_that_are_not_whole_are_refused() {
     let bounds = ["grains.diameter_min=0.5", "grains.diameter_max=1"];
     for settings in [
-        &["grains.diameter_spread=0.2"][..],
-        &["grains.sizes=\"lognormal\""],
+        &["grains.sizes=\"lognormal\""][..],
         &["grains.sizes=\"two\""],
         &[
             "grains.sizes=\"two\"",
@@ -198,4 +197,6 @@ fn sizes_that_are_not_whole_are_refused() {
         let problem = only_problem("frictional", &[&bounds[..], settings].concat());
         assert_eq!(problem.kind, ProblemKind::Inconsistent, "{problem}");
     }
+    let problem = only_problem("frictional", &["grains.diameter_spread=0.2"]);
+    assert_eq!(problem.kind, ProblemKind::Conflict, "{problem}");
 }
