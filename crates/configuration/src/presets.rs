@@ -11,48 +11,28 @@ pub struct Preset {
     pub text: &'static str,
 }
 
+/// The preset of a name, with the file that is named so.
+macro_rules! preset {
+    ($name:literal, $summary:literal) => {
+        Preset {
+            name: $name,
+            summary: $summary,
+            text: include_str!(concat!("../presets/", $name, ".toml")),
+        }
+    };
+}
+
 /// All presets.
+#[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
-    Preset {
-        name: "frictionless",
-        summary: "Frictionless grains in a prescribed wall with a coarse lattice: from rest, jams within the run.",
-        text: include_str!("../presets/frictionless.toml"),
-    },
-    Preset {
-        name: "frictionless-source",
-        summary: "The same with the lattice on which most claims of the source hold.",
-        text: include_str!("../presets/frictionless-source.toml"),
-    },
-    Preset {
-        name: "frictionless-fine",
-        summary: "The same with a fine, nearly smooth lattice of wall spheres.",
-        text: include_str!("../presets/frictionless-fine.toml"),
-    },
-    Preset {
-        name: "frictional",
-        summary: "Frictional grains in an elastic wall driven by a travelling force: jammed flow that gives way.",
-        text: include_str!("../presets/frictional.toml"),
-    },
-    Preset {
-        name: "sand-pump",
-        summary: "Sand with its weight in a lying hose that a wave squeezes to half of its bore, in SI units.",
-        text: include_str!("../presets/sand-pump.toml"),
-    },
-    Preset {
-        name: "soft-robot",
-        summary: "Plastic beads with their weight in a lying tube of four segments that close in turn, in SI units.",
-        text: include_str!("../presets/soft-robot.toml"),
-    },
-    Preset {
-        name: "silo",
-        summary: "Glass beads that fall through an open tube with a standing bottleneck, in SI units.",
-        text: include_str!("../presets/silo.toml"),
-    },
-    Preset {
-        name: "oesophagus",
-        summary: "A bolus of wet grains in a lying elastic tube that a travelling force squeezes, in SI units.",
-        text: include_str!("../presets/oesophagus.toml"),
-    },
+    preset!("frictionless", "Frictionless grains in a prescribed wall with a coarse lattice: from rest, jams within the run."),
+    preset!("frictionless-source", "The same with the lattice on which most claims of the source hold."),
+    preset!("frictionless-fine", "The same with a fine, nearly smooth lattice of wall spheres."),
+    preset!("frictional", "Frictional grains in an elastic wall driven by a travelling force: jammed flow that gives way."),
+    preset!("sand-pump", "Sand with its weight in a lying hose that a wave squeezes to half of its bore, in SI units."),
+    preset!("soft-robot", "Plastic beads with their weight in a lying tube of four segments that close in turn, in SI units."),
+    preset!("silo", "Glass beads that fall through an open tube with a standing bottleneck, in SI units."),
+    preset!("oesophagus", "A bolus of wet grains in a lying elastic tube that a travelling force squeezes, in SI units."),
 ];
 
 /// The preset of a name.

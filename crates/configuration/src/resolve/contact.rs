@@ -4,10 +4,10 @@ use peristalsis_physics::contact::{Cohesion, ContactModel, Normal, PullOff};
 
 use super::Context;
 use crate::error::ProblemKind;
-use crate::keys::{ContactKeys, UnitsKeys};
+use crate::keys::{ContactKeys, Keys};
 use crate::units::Units;
 
-/// The contact of the keys, without what stands for them in SI.
+/// The contact of the keys, without cohesion.
 pub(super) fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel> {
     let (normal, mut friction) = (keys.normal, keys.friction);
     // Of the two coefficients one stands for both.
@@ -42,7 +42,7 @@ pub(super) fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<Co
         normal,
         friction,
         rolling,
-        cohesion: Some(keys.cohesion),
+        cohesion: None,
     })
 }
 
@@ -50,17 +50,17 @@ const COHESION_FORCE: &str = "contact.cohesion_force";
 const SURFACE_ENERGY: &str = "contact.surface_energy";
 
 /// The same contact with the cohesion of its keys or of those in SI; refuses what no law has.
-pub(super) fn with_cohesion_in_si(
+pub(super) fn with_cohesion(
     contact: ContactModel,
-    keys: &UnitsKeys,
+    keys: &Keys,
     units: Option<&Units>,
     context: &mut Context<'_>,
 ) -> Option<ContactModel> {
-    let mut cohesion = contact.cohesion.unwrap_or_default();
-    if let (Some(force), Some(units)) = (keys.cohesion_force, units) {
+    let mut cohesion = keys.contact.cohesion;
+    if let (Some(force), Some(units)) = (keys.units.cohesion_force, units) {
         cohesion.cohesion_force = force / units.force();
     }
-    if let (Some(energy), Some(units)) = (keys.surface_energy, units) {
+    if let (Some(energy), Some(units)) = (keys.units.surface_energy, units) {
         // m t^-2 in J m^-2
         cohesion.surface_energy = energy * units.length() / units.force();
     }
