@@ -133,12 +133,11 @@ impl Snapshot {
             general_histories,
             ..
         } = self;
-        let is_empty = |it: [bool; 2]| it == [true; 2];
-        let springs = is_empty([pair_histories.is_empty(), wall_histories.is_empty()]);
-        let general = is_empty(general_histories.each_ref().map(Vec::is_empty));
-        if (parameters.contact.friction.is_none() && !springs)
-            || (!parameters.contact.is_general() && !general)
-        {
+        let springs = pair_histories.len() + wall_histories.len();
+        let general: usize = general_histories.iter().map(Vec::len).sum();
+        let is_general = parameters.contact.is_general();
+        let is_frictional = parameters.contact.friction.is_some() && !is_general;
+        if (springs > 0 && !is_frictional) || (general > 0 && !is_general) {
             return mismatch(
                 "it remembers contacts of another law than the grains have".to_owned(),
             );
