@@ -526,7 +526,10 @@ fn a_throat_that_closes_becomes_a_displacement_pump() {
     // 0.4 (1 + 200 g) = 1
     let end = value(&finding, "ends the flow, occlusion 0.60");
     assert!((end - 7.5e-3).abs() < 2e-4, "{end}");
-    assert_says(&finding.summary, "At 1.00 a head of 0.008 takes");
+    assert_says(
+        &finding.summary,
+        "At 1.00 a head of 0.008 instead of 0.001 takes",
+    );
     assert_says(&finding.summary, "Cohesion changes");
     assert_says(&finding.summary, "at 2 of 2 places");
     let rest = examine("Q13", &[("closure", &closure(3, 0.0))]);

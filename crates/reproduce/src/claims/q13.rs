@@ -319,7 +319,7 @@ fn shut_off(places: &[&Place]) -> Option<Uncertain> {
     Some(reached(Uncertain::normal(0.0, 0.0), ends))
 }
 
-/// What the largest head takes from the flow against the smallest one.
+/// What the largest head takes of the flow against the smallest one.
 fn loss(occlusion: &str, places: &[&Place]) -> String {
     let (Some(smallest), Some(largest)) = (places.first(), places.last()) else {
         return String::new();
@@ -328,6 +328,7 @@ fn loss(occlusion: &str, places: &[&Place]) -> String {
         "head",
         values!(
             occlusion,
+            least = number(-smallest.body_force, 3),
             head = number(-largest.body_force, 3),
             loss = difference(&smallest.flow, &largest.flow)
         ),

@@ -1,5 +1,7 @@
 //! Q14: segments that close in turn beside a smooth wave of equal stroke.
 
+use peristalsis_physics::wall::Waveform;
+
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q14.md"));
@@ -140,11 +142,8 @@ fn waves(rows: Vec<Row<'_>>) -> Vec<Drive> {
         order: String::new(),
         number: None,
         duty: None,
-        squeeze: match name {
-            "roller" => 0.3,
-            "sine" => 0.0,
-            _ => 0.25,
-        },
+        squeeze: serde_json::from_value(name.into())
+            .map_or(f64::NAN, |waveform: Waveform| 0.0 - waveform.mean()),
         filling,
         flows: flows(rows),
     };
@@ -156,11 +155,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let of_segments = evidence.study(STUDIES[0])?.rows();
     let of_waves = evidence.study(STUDIES[1])?.rows();
     let statistics = behind(&of_segments, |row| row.number_or("body_force", 0.0));
+    let by_duty = grouped(of_segments.iter().copied(), |row| row.number("drive.duty"));
+    let Some((duty, pressed)) = by_duty.last() else {
+        return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
+    };
     let most = |column| {
-        of_segments
-            .iter()
-            .map(|row| row.number(column))
-            .fold(0.0, f64::max)
+        let numbers = pressed.iter().map(|row| row.number(column));
+        numbers.fold(0.0, f64::max)
     };
     let overlap = number(most("largest_overlap"), 2);
     let often = number(100.0 * most("pressed"), 0);
@@ -181,7 +182,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
     };
     let mut draft = Draft::of(PROSE);
-    draft.weakness("pressed", values!(overlap, often));
+    draft.weakness("pressed", values!(duty = number(*duty, 2), overlap, often));
     for drive in [along, wave] {
         let name = &drive.name;
         for flow in &drive.flows {

@@ -15,9 +15,9 @@ pub(super) const CLAIM: Claim = Claim::new("Q15", PROSE, STUDIES, examine);
 const EXPONENT: f64 = 2.5;
 /// Diameter of a wall sphere, by which the clear outlet is narrower than w \[d\].
 const WALL_SPHERE: f64 = 1.0;
-/// Outlets, in grain diameters, above which the law is fitted: none of them is blocked for long.
+/// Outlets from 4 d on, to which the law is fitted: none of them is blocked for long \[d\].
 const OPEN: f64 = 3.9;
-/// The outlet plane lies so far below the narrowest place of the studies' silo \[d\].
+/// The outlet plane lies so far below the middle of the narrowest place of the studies' silo \[d\].
 const BELOW: f64 = 1.0;
 
 /// The runs at one value of what a study varies.
@@ -30,6 +30,8 @@ struct Point {
     hold_up: Uncertain,
     /// Runs whose outlet lets nothing through at the end, and all.
     blocked: (usize, usize),
+    /// Mass that all of them discharged \[m\].
+    discharged: f64,
 }
 
 impl Point {
@@ -43,6 +45,7 @@ impl Point {
                 rate: mean(&flowing, "discharge_rate").unwrap_or(Uncertain::normal(0.0, 0.0)),
                 hold_up: mean(&rows, "hold_up").unwrap_or(Uncertain::normal(f64::NAN, f64::NAN)),
                 blocked: (rows.len() - flowing.len(), rows.len()),
+                discharged: rows.iter().map(|row| row.number("discharged")).sum(),
             }
         };
         groups.map(of).collect()
@@ -52,35 +55,15 @@ impl Point {
     fn rate(&self) -> (f64, Uncertain) {
         (self.at, self.rate)
     }
-}
 
-/// How long small outlets of one size flow before an arch stops them.
-struct Arches {
-    /// Clear outlet \[d\].
-    outlet: f64,
-    /// Runs that an arch stopped, and all.
-    stopped: (usize, usize),
-    /// Mass that all of them discharged \[m\].
-    discharged: f64,
-}
-
-impl Arches {
-    fn all_of<'a>(rows: impl Iterator<Item = Row<'a>>) -> Vec<Self> {
-        let of = |(width, rows): (f64, Vec<Row<'_>>)| {
-            let is_stopped = |row: &&Row<'_>| row.number("discharge_rate") == 0.0;
-            Self {
-                outlet: width - WALL_SPHERE,
-                stopped: (rows.iter().filter(is_stopped).count(), rows.len()),
-                discharged: rows.iter().map(|row| row.number("discharged")).sum(),
-            }
-        };
-        grouped(rows, Row::width).into_iter().map(of).collect()
+    fn blocked(&self) -> String {
+        format!("{}/{}", self.blocked.0, self.blocked.1)
     }
 
     /// Mean mass between two arches, M \[m\]: the likeliest of an exponential distribution of which the runs that still flow
     /// are censored, the mass of all runs over the arches; its error is M over the root of their number. `None` without one.
     fn mean_mass(&self) -> Option<Uncertain> {
-        let arches = self.stopped.0 as f64;
+        let arches = self.blocked.0 as f64;
         let mass = self.discharged / arches;
         (arches > 0.0).then(|| Uncertain::normal(mass, mass / arches.sqrt()))
     }
@@ -167,8 +150,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut rows = outlets?.rows();
     rows.extend(small?.rows());
     let statistics = behind(&rows, Row::width);
-    let small = Arches::all_of(rows.iter().copied().filter(|row| outlet(row) < OPEN));
     let outlets = Point::all_of(rows, outlet);
+    let small = || outlets.iter().filter(|it| it.at < OPEN);
     let head_rows = heads?.rows();
     // The clear diameter of the tube above the hopper.
     let bore = head_rows
@@ -186,7 +169,6 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut draft = Draft::of(PROSE).varying("outlet");
     draft.compared("exponent", &[], law.exponent, EXPONENT);
     draft.quantity("offset", &[], law.offset);
-    let blocked = |point: &Point| format!("{}/{}", point.blocked.0, point.blocked.1);
     draft.table(
         "outlets",
         &[],
@@ -197,7 +179,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
                 number(point.at, 2),
                 point.rate.to_string(),
                 cell_of(told, |it| number(it, 2)),
-                blocked(point),
+                point.blocked(),
             ]
         }),
     );
@@ -213,25 +195,20 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.table(
         "arches",
         &[],
-        small.iter().map(|it| {
-            let stopped = format!("{}/{}", it.stopped.0, it.stopped.1);
-            vec![number(it.outlet, 2), stopped, it.in_words()]
-        }),
+        small().map(|it| vec![number(it.at, 2), it.blocked(), it.in_words()]),
     );
-    for it in &small {
-        let outlet = number(it.outlet, 2);
+    for it in small() {
+        let outlet = number(it.at, 2);
         draft.quantity("mass", values!(outlet), it.mean_mass());
     }
     // Of the outlets without an arch the smallest says most.
-    let told = 1 + small.iter().take_while(|it| it.stopped.0 > 0).count();
-    let masses = small.iter().take(told).map(|it| {
-        PROSE.text(
-            "mass",
-            values!(mass = it.in_words(), outlet = number(it.outlet, 2)),
-        )
+    let told = 1 + small().take_while(|it| it.blocked.0 > 0).count();
+    let masses = small().take(told).map(|it| {
+        let outlet = number(it.at, 2);
+        PROSE.text("mass", values!(mass = it.in_words(), outlet))
     });
     let masses = masses.collect::<Vec<_>>().join(", ");
-    let arches = match small.iter().any(|it| it.stopped.0 > 0) {
+    let arches = match small().any(|it| it.blocked.0 > 0) {
         true => PROSE.text("arches", values!(masses)),
         false => PROSE.text("no arches", &[]),
     };
@@ -256,35 +233,26 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q15_NEEDED))
 }
 
-/// Part of a rate by which two that are alike may differ beside their errors.
-const ALIKE: f64 = 0.05;
-
 /// How the rate depends on the filling: by how much it varies above one bore, and what the lowest filling discharges.
 fn fillings(heads: &[Point], bore: f64) -> Option<String> {
     let (low, full) = (heads.first()?, heads.last()?);
-    let off = |point: &Point| 100.0 * (1.0 - point.rate.value / full.rate.value);
     let high: Vec<Uncertain> = heads
         .iter()
         .filter(|point| point.at >= bore)
         .map(|point| point.rate)
         .collect();
-    let weight = |rate: &Uncertain| 1.0 / (rate.error * rate.error);
-    let weights: f64 = high.iter().map(weight).sum();
-    let mean = high
-        .iter()
-        .map(|rate| weight(rate) * rate.value)
-        .sum::<f64>()
-        / weights;
+    let mean = weighted_mean(&high)?.value;
     let chi_squared: f64 = high
         .iter()
         .map(|rate| rate.deviations_from(mean).powi(2))
         .sum();
-    let free = high.len().checked_sub(1)?;
+    let free = high.len().checked_sub(1).filter(|free| *free > 0)?;
     // Mean and standard deviation of chi^2 are its degrees of freedom and the root of twice them.
     let most = free as f64 + AGREES_WITHIN * (2.0 * free as f64).sqrt();
     let off_mean = high.iter().map(|rate| (rate.value - mean).abs());
     let farthest = off_mean.fold(0.0, f64::max);
-    let less = difference(&low.rate, &full.rate);
+    let less = difference(&full.rate, &low.rate);
+    let part = 100.0 / full.rate.value;
     let outcome = match chi_squared <= most {
         true => PROSE.text("agree", &[]),
         false => PROSE.text("differ", &[]),
@@ -299,21 +267,21 @@ fn fillings(heads: &[Point], bore: f64) -> Option<String> {
             chi = number(chi_squared, 1),
             free,
             low = number(low.at, 0),
-            less = number(off(low), 0),
-            error = number(100.0 * less.error / full.rate.value, 0)
+            less = number(part * less.value, 0),
+            error = number(part * less.error, 0)
         ),
     ))
 }
 
 /// What happens where the silo no longer takes all that is fed.
 fn change(feeds: &[Point]) -> Option<String> {
-    let takes = |point: &&Point| point.rate.value >= (1.0 - 2.0 * ALIKE) * point.at;
+    let takes = |point: &&Point| point.rate.deviations_from(point.at).abs() <= AGREES_WITHIN;
     let dilute = feeds.iter().take_while(takes).last()?;
     let dense = feeds.iter().find(|point| point.at > dilute.at)?;
     let [before, after] = [dilute, dense].map(|point| point.rate.to_string());
     let [thin, thick] = [dilute, dense].map(|point| number(point.hold_up.value, 0));
-    let drops =
-        dilute.rate.value - dense.rate.value > 2.0 * dilute.rate.error.hypot(dense.rate.error);
+    let fall = difference(&dilute.rate, &dense.rate);
+    let drops = fall.value > AGREES_WITHIN * fall.error;
     let drop = if drops { "a drop" } else { "no drop" };
     Some(PROSE.text(
         "change",
