@@ -59,9 +59,7 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
         write(path, &text.unwrap_or_else(|| configuration.to_toml()))?;
     }
     let estimate = estimate(&configuration, None).map_err(|error| locate(error, sources))?;
-    let Some(design) = Design::of(&configuration, estimate) else {
-        return Err(no_design());
-    };
+    let design = Design::of(&configuration, estimate).ok_or_else(no_design)?;
     if let Some(path) = &arguments.html {
         let name = crate::sources::name(sources);
         write(path, &page(&design, &name, &in_words(&design)))?;

@@ -71,12 +71,10 @@ impl Replicate {
         let sum = |value: fn(&Load) -> f64| rows.iter().map(|row| value(&row.load)).sum::<f64>();
         let mass = sum(|load| load.filling);
         let whole = Load {
-            filling: mass,
-            apparent: 0.0,
-            moment: 0.0,
             vertical: sum(|load| load.vertical),
             radial: sum(|load| load.radial),
             friction: sum(|load| load.friction),
+            ..Load::default()
         };
         let line_density = sum(|load| load.line_density() * load.filling) / mass;
         let (stress_ratio, saturation) = (whole.stress_ratio(), saturation(rows));
