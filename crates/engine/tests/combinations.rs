@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use peristalsis_physics::contact::Cohesion;
 
 struct Case {
     name: String,
@@ -130,13 +131,15 @@ fn a_snapshot_of_another_simulation_is_refused() {
     simulation.advance(50).unwrap();
     let snapshot = simulation.snapshot();
     assert!(!snapshot.wall_histories.is_empty());
-    for (row, reason) in [(smooth, "another law"), (elastic, "wall spheres")] {
-        let refused = Simulation::restore(
-            snapshot.clone(),
-            row.state.wall.clone(),
-            row.state.parameters,
-        )
-        .unwrap_err();
+    let of = |row: &Case| (row.state.wall.clone(), row.state.parameters);
+    let (wall, mut cohesive) = of(frictional);
+    cohesive.contact.cohesion = Some(Cohesion::default());
+    for ((wall, parameters), reason) in [
+        (of(smooth), "another law"),
+        ((wall, cohesive), "another law"),
+        (of(elastic), "wall spheres"),
+    ] {
+        let refused = Simulation::restore(snapshot.clone(), wall, parameters).unwrap_err();
         assert!(refused.to_string().contains(reason), "{refused}");
     }
     let restore = |change: &dyn Fn(&mut peristalsis_engine::Snapshot)| {
