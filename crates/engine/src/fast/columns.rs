@@ -6,7 +6,7 @@ use super::lanes::{LaneVector, Lanes};
 use super::machine::Machine;
 
 /// Vectors in space, a column for each component.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Columns {
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,

@@ -1,14 +1,19 @@
 //! Wall spheres that stand anywhere: each has an angle and a place of its own.
 
 use core::f64::consts::{PI, TAU};
+use core::ops::Range;
 use std::sync::Arc;
 
 use glam::DVec3;
+use peristalsis_physics::real::Real;
 use peristalsis_physics::wall::{Lattice, RadiusWave, Ring};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::Instant;
+use crate::fast::columns::Columns;
+use crate::fast::lanes::{LANES, Lanes, Mask};
+use crate::fast::machine::{Instructions, Machine, Work};
 use crate::initial::uniform;
 
 /// Purpose of these random numbers beside those of the grains, whatever the seeds.
@@ -16,7 +21,7 @@ const STREAM: u64 = 3;
 /// Failures in a row after which spheres are let come nearer to each other, and by how much.
 const PATIENCE: u32 = 20_000;
 const NEARER: f64 = 0.99;
-/// Distance \[d\] by which a first look at a sphere sees too far, so that rounding hides none.
+/// Distance \[d\], or square of one, by which a first look at a sphere sees too far, so that rounding hides none.
 const EDGE: f64 = 1e-6;
 /// Part of a surface that discs cover where no more find room, when they come one after another: nobody has covered more.
 const MOST_COVERED: f64 = 0.55;
@@ -24,48 +29,37 @@ const MOST_COVERED: f64 = 0.55;
 /// Spheres that follow the wave, each at its own angle and z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scattered {
-    /// In the order of z, which is that of their numbers.
-    places: Arc<[Place]>,
+    /// cos and sin of the angle of each, and its z; in the order of z, which is that of their numbers. Room for eight more.
+    places: Arc<Columns>,
+    /// cos and sin of 2 pi z/lambda of each, for a wave towards +z.
+    phases: Arc<[(f64, f64)]>,
     /// The first sphere of each piece of the tube, and their number at the end.
     pieces: Arc<[usize]>,
     length: f64,
-}
-
-/// Where one of them stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
-    z: f64,
-    /// cos and sin of its angle.
-    direction: (f64, f64),
-    /// cos and sin of 2 pi z/lambda, for a wave towards +z.
-    phase: (f64, f64),
 }
 
 impl Scattered {
     /// Spheres of the diameter, and on the length, of a lattice, at the given angles \[rad\] and places z \[d\].
     pub fn at(lattice: &Lattice, places: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let length = lattice.length();
-        let mut places: Vec<Place> = places
-            .into_iter()
-            .map(|(angle, z)| {
-                let phase = TAU * z / lattice.wavelength;
-                Place {
-                    z,
-                    direction: (libm::cos(angle), libm::sin(angle)),
-                    phase: (libm::cos(phase), libm::sin(phase)),
-                }
-            })
-            .collect();
-        places.sort_by(|one, other| one.z.total_cmp(&other.z));
-        let number = ((length / lattice.sphere_diameter) as usize).clamp(1, places.len().max(1));
+        let mut sorted: Vec<(f64, f64)> = places.into_iter().collect();
+        sorted.sort_by(|one, other| one.1.total_cmp(&other.1));
+        let number = ((length / lattice.sphere_diameter) as usize).clamp(1, sorted.len().max(1));
         let begins = |piece: usize| {
-            let z = length * piece as f64 / number as f64;
-            places.partition_point(|place| place.z < z)
+            let begin = length * piece as f64 / number as f64;
+            sorted.partition_point(|&(_, z)| z < begin)
         };
-        let pieces = (0..number).map(begins).chain([places.len()]).collect();
+        let pieces = (0..number).map(begins).chain([sorted.len()]).collect();
+        let mut places = Columns::default();
+        places.clear(sorted.len() + LANES);
+        for (index, &(angle, z)) in sorted.iter().enumerate() {
+            places.set(index, DVec3::new(libm::cos(angle), libm::sin(angle), z));
+        }
+        let phases = sorted.iter().map(|&(_, z)| TAU * z / lattice.wavelength);
         Self {
+            places: Arc::new(places),
+            phases: phases.map(|it| (libm::cos(it), libm::sin(it))).collect(),
             pieces,
-            places: places.into(),
             length,
         }
     }
@@ -87,15 +81,22 @@ impl Scattered {
         let (length, number) = (lattice.length(), lattice.spheres());
         let area = 2.0 * PI * radius * length;
         let mut apart = (4.0 * MOST_COVERED * area / (PI * number as f64)).sqrt();
-        let mut strips: Vec<Vec<(f64, f64)>> = vec![Vec::new(); (length / apart).max(1.0) as usize];
+        // Angle, z, and cos and sin of the angle of those placed.
+        let mut strips: Vec<Vec<[f64; 4]>> = vec![Vec::new(); (length / apart).max(1.0) as usize];
         let count = strips.len();
         let (mut placed, mut failures) = (0, 0);
         while placed < number {
             let (angle, z) = (TAU * uniform(&mut random), length * uniform(&mut random));
             let strip = ((z / length * count as f64) as usize).min(count - 1);
-            let is_near = |&(other, at): &(f64, f64)| {
+            let (sin, cos) = libm::sincos(angle);
+            let is_near = |&[other, at, its_cos, its_sin]: &[f64; 4]| {
                 let along = (z - at).abs();
                 let along = along.min(length - along);
+                let chord = 2.0 * radius * radius * (1.0 - (cos * its_cos + sin * its_sin));
+                let room = apart * apart - along * along;
+                if (room - chord).abs() > EDGE {
+                    return chord < room;
+                }
                 let across = 2.0 * radius * libm::sin(0.5 * (angle - other));
                 along * along + across * across < apart * apart
             };
@@ -109,16 +110,17 @@ impl Scattered {
                     (apart, failures) = (apart * NEARER, 0);
                 }
             } else {
-                strips[strip].push((angle, z));
+                strips[strip].push([angle, z, cos, sin]);
                 (placed, failures) = (placed + 1, 0);
             }
         }
-        Self::at(lattice, strips.into_iter().flatten())
+        let placed = strips.iter().flatten();
+        Self::at(lattice, placed.map(|&[angle, z, ..]| (angle, z)))
     }
 
     /// How many there are.
     pub(super) fn spheres(&self) -> usize {
-        self.places.len()
+        self.phases.len()
     }
 
     /// A sphere as it is now: cos and sin of its angle, the wall at its place, and z.
@@ -128,8 +130,15 @@ impl Scattered {
         wave: &RadiusWave,
         now: &Instant,
     ) -> ((f64, f64), Ring, f64) {
-        let place = &self.places[index];
-        (place.direction, ring(place, wave, now), place.z)
+        let place = self.places.get(index);
+        ((place.x, place.y), self.ring(index, wave, now), place.z)
+    }
+
+    /// The wall at the place of a sphere.
+    #[inline(always)]
+    fn ring(&self, index: usize, wave: &RadiusWave, now: &Instant) -> Ring {
+        let (cos, sin) = self.phases[index];
+        now.ring(wave, self.places.z[index], (cos, wave.heading * sin))
     }
 
     /// Calls `touch` for each sphere whose centre is within `reach` of `centre`, with its number, the separation (centre
@@ -154,36 +163,70 @@ impl Scattered {
             let turns = unfolded.div_euclid(number as i64);
             let (piece, shift) = (unfolded.rem_euclid(number as i64) as usize, turns as f64);
             let z = centre.z - shift * self.length;
-            for index in self.pieces[piece]..self.pieces[piece + 1] {
-                let place = &self.places[index];
-                let dz = z - place.z;
-                let room = reach * reach - dz * dz;
-                // How far the grain is from the line on which the sphere moves, and along it.
-                let (cos, sin) = place.direction;
-                let across = centre.x * sin - centre.y * cos;
-                let along = centre.x * cos + centre.y * sin;
-                if room <= 0.0 || across * across > room + EDGE || along + reach + EDGE < narrowest
-                {
-                    continue;
-                }
-                let Ring {
-                    radius, velocity, ..
-                } = ring(place, wave, now);
-                let (dx, dy) = (centre.x - radius * cos, centre.y - radius * sin);
-                if dx * dx + dy * dy < room {
-                    let moving = DVec3::new(velocity * cos, velocity * sin, 0.0);
-                    touch(index as u32, DVec3::new(dx, dy, dz), moving);
+            let (begin, end) = (self.pieces[piece], self.pieces[piece + 1]);
+            for begin in (begin..end).step_by(u64::BITS as usize) {
+                let mut seen = Instructions::widest().run(Look {
+                    places: &self.places,
+                    centre: centre.with_z(z),
+                    reach,
+                    narrowest,
+                    spheres: begin..end,
+                });
+                while seen != 0 {
+                    let index = begin + seen.trailing_zeros() as usize;
+                    seen &= seen - 1;
+                    let place = self.places.get(index);
+                    let (cos, sin, dz) = (place.x, place.y, z - place.z);
+                    let room = reach * reach - dz * dz;
+                    let Ring {
+                        radius, velocity, ..
+                    } = self.ring(index, wave, now);
+                    let (dx, dy) = (centre.x - radius * cos, centre.y - radius * sin);
+                    if dx * dx + dy * dy < room {
+                        let moving = DVec3::new(velocity * cos, velocity * sin, 0.0);
+                        touch(index as u32, DVec3::new(dx, dy, dz), moving);
+                    }
                 }
             }
         }
     }
 }
 
-/// The wall at a place.
-#[inline(always)]
-fn ring(place: &Place, wave: &RadiusWave, now: &Instant) -> Ring {
-    let (cos, sin) = place.phase;
-    now.ring(wave, place.z, (cos, wave.heading * sin))
+/// A first look at the spheres about a grain, wherever the wave has them: which may be within `reach` of it.
+struct Look<'a> {
+    places: &'a Columns,
+    centre: DVec3,
+    reach: f64,
+    /// The least distance from the axis that the wave gives a sphere.
+    narrowest: f64,
+    /// The spheres to be looked at; the answer has a bit for each of the first 64.
+    spheres: Range<usize>,
+}
+
+impl Work for Look<'_> {
+    type Answer = u64;
+
+    #[inline(always)]
+    fn run<M: Machine>(self) -> u64 {
+        let [x, y, z] = self.centre.to_array().map(Lanes::<M>::splat);
+        let squared = Lanes::splat(self.reach * self.reach);
+        let least = Lanes::splat(self.narrowest - self.reach - EDGE);
+        let mut seen = 0;
+        for block in 0..(u64::BITS as usize / LANES).min(self.spheres.len().div_ceil(LANES)) {
+            let begin = self.spheres.start + block * LANES;
+            let place = self.places.load::<M>(begin);
+            let (cos, sin, dz) = (place.x, place.y, z - place.z);
+            let room = squared - dz * dz;
+            // How far the grain is from the line on which the sphere moves, and along it.
+            let (across, along) = (x * sin - y * cos, x * cos + y * sin);
+            let near = Lanes::splat(0.0).less(room)
+                & (across * across).at_most(room + Lanes::splat(EDGE))
+                & least.at_most(along)
+                & Mask::first(self.spheres.end - begin);
+            seen |= u64::from(near.to_bits()) << (block * LANES);
+        }
+        seen
+    }
 }
 
 fn random(seed: u64) -> ChaCha8Rng {
@@ -205,18 +248,21 @@ mod tests {
         staggered: true,
     };
 
+    /// cos and sin of the angle of each sphere, and its z.
+    fn places(scattered: &Scattered) -> Vec<DVec3> {
+        let numbers = 0..scattered.spheres();
+        numbers.map(|index| scattered.places.get(index)).collect()
+    }
+
     /// The least distance of two spheres in the straight tube of radius 1.5.
     fn least_distance(scattered: &Scattered) -> f64 {
-        let places = &scattered.places;
+        let places = places(scattered);
         let mut least = f64::INFINITY;
         for (number, one) in places.iter().enumerate() {
             for other in &places[..number] {
                 let along = (one.z - other.z).abs();
                 let along = along.min(LATTICE.length() - along);
-                let (dx, dy) = (
-                    1.5 * (one.direction.0 - other.direction.0),
-                    1.5 * (one.direction.1 - other.direction.1),
-                );
+                let (dx, dy) = (1.5 * (one.x - other.x), 1.5 * (one.y - other.y));
                 least = least.min((along * along + dx * dx + dy * dy).sqrt());
             }
         }
@@ -229,15 +275,15 @@ mod tests {
         let disordered = Scattered::disordered(&LATTICE, 1.5, 1);
         for scattered in [&random, &disordered] {
             assert_eq!(scattered.spheres(), LATTICE.spheres());
-            let places = &scattered.places;
+            let places = places(scattered);
             assert!(places.is_sorted_by(|one, other| one.z <= other.z));
             // Means of z/L, cos and sin over 504 spheres, five standard errors wide.
-            let mean = |of: &dyn Fn(&Place) -> f64| {
+            let mean = |of: &dyn Fn(&DVec3) -> f64| {
                 places.iter().map(of).sum::<f64>() / places.len() as f64
             };
             assert!((mean(&|place| place.z / LATTICE.length()) - 0.5).abs() < 0.065);
-            assert!(mean(&|place| place.direction.0).abs() < 0.16);
-            assert!(mean(&|place| place.direction.1).abs() < 0.16);
+            assert!(mean(&|place| place.x).abs() < 0.16);
+            assert!(mean(&|place| place.y).abs() < 0.16);
         }
         assert!(least_distance(&random) < 0.05);
         // Equal discs that come one after another cover half of a surface, not much more.
