@@ -64,12 +64,19 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
             .pairs
             .outdated(&bodies.position, &bodies.turns, length, skin)
         {
-            self.rebuild(bodies, wall, skin, &Threads::default());
+            self.rebuild(bodies, wall, skin, None, &Threads::default());
         }
     }
 
-    /// Makes the neighbour list anew.
-    pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64, threads: &Threads) {
+    /// Makes the neighbour list anew; `held` as in [`Neighbours::rebuild`].
+    pub(crate) fn rebuild(
+        &mut self,
+        bodies: &Bodies,
+        wall: &Wall,
+        skin: f64,
+        held: Option<&[u32]>,
+        threads: &Threads,
+    ) {
         let grains = bodies.grains;
         let rule = PairRule {
             diameter: &bodies.diameter,
@@ -80,7 +87,7 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
             admits: |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
         };
         self.pairs
-            .rebuild(&bodies.position, &bodies.turns, &rule, threads);
+            .rebuild(&bodies.position, &bodies.turns, &rule, held, threads);
     }
 }
 

@@ -13,6 +13,9 @@ use self::cells::{Cells, Grid, Piece, Rows, Search};
 use crate::fast::machine::Instructions;
 use crate::fast::threads::{PER_THREAD, Threads};
 
+/// Pairs whose spheres are both late are seldom near, so their search goes farther \[d\] and serves several lists.
+const FARTHER: f64 = 1.0;
+
 /// Rows of partners with a value of type `H` beside each pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<H> {
@@ -23,11 +26,30 @@ pub(crate) struct Neighbours<H> {
     origin: Vec<DVec3>,
     /// Skin with which it was made.
     skin: f64,
+    late: Late,
     cells: Cells,
     late_cells: Cells,
     pieces: Vec<Piece>,
+    /// Pairs that remember a contact, as (i, j, place in the list), when the list was last made.
+    remembered: Vec<[u32; 3]>,
+    /// Of these, as (j, i), those that were too far apart to be found.
+    far: Vec<(u32, u32)>,
+    /// Room to work in, for [`Rows::turn`].
+    smaller: Vec<[[u32; 3]; 2]>,
     /// Places of the histories that moved when the list was made.
     moved: Vec<u32>,
+}
+
+/// The spheres of whose pairs not all are admitted, as they were when those pairs were searched for.
+#[derive(Clone, Debug, Default)]
+struct Late {
+    /// Number of the first.
+    first: usize,
+    /// Their unfolded positions.
+    origin: Vec<DVec3>,
+    /// Skin of the search.
+    skin: f64,
+    found: Vec<Piece>,
 }
 
 impl<H: Copy + Default + PartialEq> Neighbours<H> {
@@ -41,9 +63,13 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             next: Rows::default(),
             origin: Vec::new(),
             skin: 0.0,
+            late: Late::default(),
             cells: Cells::default(),
             late_cells: Cells::default(),
             pieces: Vec::new(),
+            remembered: Vec::new(),
+            far: Vec::new(),
+            smaller: Vec::new(),
             moved: Vec::new(),
         }
     }
@@ -77,11 +103,6 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// The partners of sphere i with larger numbers.
     pub(crate) fn partners(&self, i: usize) -> &[u32] {
         &self.rows.partner[self.rows.range(i)]
-    }
-
-    /// The histories of all pairs, row after row.
-    pub(crate) fn histories(&self) -> &[H] {
-        &self.rows.history
     }
 
     /// The histories of all pairs, row after row.
@@ -137,83 +158,165 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
 
     /// How far the spheres from number `first` on have gone since the list was made.
     pub(crate) fn drift(&self, first: usize, unfolded: impl Iterator<Item = DVec3>) -> Drift {
-        let mut drift = Drift::NONE;
-        let origins = self.origin.get(first..).unwrap_or_default();
-        for (place, origin) in unfolded.zip(origins) {
-            let by = place - *origin;
-            drift.lateral_squared = drift.lateral_squared.max(by.x * by.x + by.y * by.y);
-            drift.least = drift.least.min(by.z);
-            drift.largest = drift.largest.max(by.z);
-        }
-        drift
+        Drift::of(unfolded, self.origin.get(first..).unwrap_or_default())
     }
 
-    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, and those that still remember a
-    /// contact, in a time that grows linearly with the number of spheres. Histories move with their pairs.
+    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, perhaps some farther ones, and those that
+    /// still remember a contact, in a time that grows linearly with the number of spheres. `held` are the places of the
+    /// latter in the list before, in order, where others keep the histories; else histories move with their pairs.
     pub(crate) fn rebuild<F: Fn(usize, usize) -> bool + Sync>(
         &mut self,
         position: &[DVec3],
         turns: &[i32],
         rule: &PairRule<'_, F>,
+        held: Option<&[u32]>,
         threads: &Threads,
     ) where
         H: Sync,
     {
-        let grid = Grid::of(position, rule);
+        let unfolded = position.iter().zip(turns);
+        let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * rule.length));
+        self.search_late(position, unfolded.clone(), rule, threads);
+        let grid = Grid::of(position, rule, rule.skin);
+        let early = rule.admits_all_below.min(position.len());
         let (cells, late_cells) = (&mut self.cells, &mut self.late_cells);
-        let late = rule.admits_all_below.min(position.len());
-        let mut sorts = [(cells, 0), (late_cells, late)];
-        threads.each(&mut sorts, (), &|_| 0, &|(cells, first), ()| {
-            cells.sort(grid, position, rule.diameter, *first);
+        let mut sorts = [(cells, 0..early), (late_cells, early..position.len())];
+        threads.each(&mut sorts, (), &|_| 0, &|(cells, numbers), ()| {
+            cells.sort(grid, position, rule.diameter, numbers.clone());
         });
-        let pieces = match threads.number() {
-            1 => 1,
-            threads => PER_THREAD * threads,
-        };
-        let rows = |piece: usize| piece * position.len() / pieces;
-        self.pieces.resize_with(pieces, Piece::default);
-        for (number, piece) in self.pieces.iter_mut().enumerate() {
-            piece.rows = rows(number)..rows(number + 1);
+        let (cells, of) = (&self.cells, [&self.cells, &self.late_cells]);
+        search(
+            &mut self.pieces,
+            cells,
+            &of,
+            rule.skin,
+            rule.length,
+            threads,
+        );
+        self.remember(held);
+        let found = [&self.pieces[..], &self.late.found];
+        let Self { rows, next, .. } = self;
+        next.turn(position.len(), found, &[], &mut self.smaller);
+        self.far.clear();
+        let is_far = |&&[i, j, _]: &&[u32; 3]| next.place(i as usize, j).is_none();
+        let far = self.remembered.iter().filter(is_far);
+        self.far.extend(far.map(|&[i, j, _]| (j, i)));
+        if !self.far.is_empty() {
+            // Contacts that ended in this very step are listed once more, however far their spheres have jumped: what they
+            // remember must be accounted for.
+            self.far.sort_unstable();
+            next.turn(position.len(), found, &self.far, &mut self.smaller);
         }
-        let (cells, late_cells, old) = (&self.cells, &self.late_cells, &self.rows);
-        threads.each(&mut self.pieces, (), &|_| 0, &|piece, ()| {
-            Instructions::widest().run(Search {
-                cells,
-                late_cells,
-                position,
-                rule,
-                old,
-                piece,
-            });
-        });
-        let Self {
-            rows,
-            next,
-            pieces,
-            moved,
-            ..
-        } = self;
-        next.join(pieces);
-        // Only histories of contacts need be moved; the old list keeps fresh ones alone.
+        self.moved.clear();
+        let places = self.remembered.iter();
+        let places = places.filter_map(|&[i, j, _]| next.place(i as usize, j));
+        self.moved.extend(places.map(|place| place as u32));
+        debug_assert_eq!(self.moved.len(), self.remembered.len());
         next.history.resize(next.partner.len(), H::default());
-        moved.clear();
-        for &(row, at) in pieces.iter().flat_map(|piece| &piece.remembered) {
-            let to = next.place(row as usize, rows.partner[at as usize]);
-            let to = to.expect("a pair with a history is listed");
-            next.history[to] = core::mem::take(&mut rows.history[at as usize]);
-            moved.push(to as u32);
+        if held.is_none() {
+            // Only histories of contacts need be moved; the old list keeps fresh ones alone.
+            for (&to, &[.., at]) in self.moved.iter().zip(&self.remembered) {
+                next.history[to as usize] = core::mem::take(&mut rows.history[at as usize]);
+            }
         }
         core::mem::swap(&mut self.rows, &mut self.next);
         self.skin = rule.skin;
         self.origin.clear();
-        self.origin.extend(
-            position
-                .iter()
-                .zip(turns)
-                .map(|(p, &turns)| DVec3::new(p.x, p.y, p.z + f64::from(turns) * rule.length)),
-        );
+        self.origin.extend(unfolded);
         debug_assert_eq!(self.rows(), position.len());
     }
+
+    /// Searches for the pairs of late spheres, unless what was found before holds all that are wanted.
+    fn search_late<F: Fn(usize, usize) -> bool + Sync>(
+        &mut self,
+        position: &[DVec3],
+        unfolded: impl Iterator<Item = DVec3> + Clone,
+        rule: &PairRule<'_, F>,
+        threads: &Threads,
+    ) {
+        let first = rule.admits_all_below.min(position.len());
+        let late = &mut self.late;
+        let unfolded = unfolded.skip(first);
+        let same = late.first == first && late.origin.len() == position.len() - first;
+        let drift = Drift::of(unfolded.clone(), &late.origin);
+        if same && drift.approach() + rule.skin <= late.skin {
+            return;
+        }
+        late.first = first;
+        late.skin = rule.skin + FARTHER;
+        late.origin.clear();
+        late.origin.extend(unfolded);
+        if late.origin.is_empty() {
+            late.found.clear();
+            return;
+        }
+        let grid = Grid::of(position, rule, late.skin);
+        let cells = &mut self.late_cells;
+        cells.sort(grid, position, rule.diameter, first..position.len());
+        let cells = &*cells;
+        search(
+            &mut late.found,
+            cells,
+            &[cells],
+            late.skin,
+            rule.length,
+            threads,
+        );
+        threads.each(&mut late.found, (), &|_| 0, &|piece, ()| {
+            piece.found.retain(&rule.admits);
+        });
+    }
+
+    /// Writes down the pairs that remember a contact, at `held` places of the list or wherever a history is no fresh one.
+    fn remember(&mut self, held: Option<&[u32]>) {
+        let Self {
+            rows, remembered, ..
+        } = self;
+        remembered.clear();
+        let mut i = 0;
+        let mut remember = |at: u32| {
+            while rows.start[i + 1] <= at {
+                i += 1;
+            }
+            remembered.push([i as u32, rows.partner[at as usize], at]);
+        };
+        match held {
+            Some(held) => held.iter().copied().for_each(remember),
+            None => (0..)
+                .zip(&rows.history)
+                .filter(|(_, history)| **history != H::default())
+                .for_each(|(at, _)| remember(at)),
+        }
+    }
+}
+
+/// Searches all cells for pairs; the pieces of the answer are as many as serve the threads.
+fn search(
+    pieces: &mut Vec<Piece>,
+    cells: &Cells,
+    of: &[&Cells],
+    skin: f64,
+    length: f64,
+    threads: &Threads,
+) {
+    let number = match threads.number() {
+        1 => 1,
+        threads => PER_THREAD * threads,
+    };
+    let begin = |piece: usize| piece * cells.number() / number;
+    pieces.resize_with(number, Piece::default);
+    for (number, piece) in pieces.iter_mut().enumerate() {
+        piece.cells = begin(number)..begin(number + 1);
+    }
+    threads.each(pieces, (), &|_| 0, &|piece, ()| {
+        Instructions::widest().run(Search {
+            cells,
+            of,
+            skin,
+            length,
+            piece,
+        });
+    });
 }
 
 /// Bounds of displacements.
@@ -236,6 +339,18 @@ impl Drift {
         largest: f64::NEG_INFINITY,
         lateral_squared: 0.0,
     };
+
+    /// Of spheres that are here now and were there.
+    fn of(here: impl Iterator<Item = DVec3>, there: &[DVec3]) -> Self {
+        let mut drift = Self::NONE;
+        for (place, origin) in here.zip(there) {
+            let by = place - *origin;
+            drift.lateral_squared = drift.lateral_squared.max(by.x * by.x + by.y * by.y);
+            drift.least = drift.least.min(by.z);
+            drift.largest = drift.largest.max(by.z);
+        }
+        drift
+    }
 
     /// Of these spheres and of others.
     pub(crate) fn and(self, other: Self) -> Self {

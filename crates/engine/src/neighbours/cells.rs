@@ -1,10 +1,12 @@
 //! Spheres by cells, and the search for pairs among them, eight candidates at a time.
 
+use core::ops::Range;
+
 use glam::DVec3;
 use peristalsis_physics::real::Real;
 
 use crate::fast::columns::Columns;
-use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
+use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::{Machine, Work};
 
 /// The rule by which pairs are listed.
@@ -34,7 +36,7 @@ pub(super) struct Rows<H> {
 
 impl<H> Rows<H> {
     #[inline(always)]
-    pub(super) fn range(&self, row: usize) -> core::ops::Range<usize> {
+    pub(super) fn range(&self, row: usize) -> Range<usize> {
         self.start[row] as usize..self.start[row + 1] as usize
     }
 
@@ -44,37 +46,101 @@ impl<H> Rows<H> {
         let place = self.partner[range.clone()].binary_search(&partner).ok()?;
         Some(range.start + place)
     }
-}
 
-impl<H> Rows<H> {
-    /// Takes the rows of all pieces, without values.
-    pub(super) fn join(&mut self, pieces: &[Piece]) {
-        self.start.clear();
-        self.start.push(0);
-        self.partner.clear();
-        let partners = pieces.iter().map(|piece| piece.partner.len()).sum();
-        if self.partner.capacity() < partners {
+    /// Rows of so many spheres, without values, from the smaller partners that two searches found of each, and from `more`
+    /// pairs (j, i), j > i, which stand in the order of j.
+    pub(super) fn turn(
+        &mut self,
+        spheres: usize,
+        found: [&[Piece]; 2],
+        more: &[(u32, u32)],
+        smaller: &mut Vec<[[u32; 3]; 2]>,
+    ) {
+        let Self { start, partner, .. } = self;
+        // While they are filled, the end of row i stands at i + 1; before, its length at i + 2.
+        start.clear();
+        start.resize(spheres + 2, 0);
+        smaller.clear();
+        smaller.resize(spheres, [[0; 3]; 2]);
+        for (search, pieces) in found.into_iter().enumerate() {
+            for (number, Piece { found, .. }) in (0..).zip(pieces) {
+                for i in &found.smaller {
+                    start[*i as usize + 2] += 1;
+                }
+                let mut begin = 0;
+                for &(j, end) in &found.ends {
+                    smaller[j as usize][search] = [number, begin, end];
+                    begin = end;
+                }
+            }
+        }
+        for &(_, i) in more {
+            start[i as usize + 2] += 1;
+        }
+        let mut end = 0;
+        for start in start.iter_mut() {
+            end += *start;
+            *start = end;
+        }
+        if partner.capacity() < end as usize {
             // Room for later lists, so that they seldom ask for more.
-            self.partner.reserve(2 * partners);
+            partner.reserve(2 * end as usize - partner.len());
         }
-        for piece in pieces {
-            let end = self.partner.len() as u32;
-            self.start
-                .extend(piece.ends.iter().map(|of_row| end + of_row));
-            self.partner.extend_from_slice(&piece.partner);
+        partner.resize(end as usize, 0);
+        let mut more = more.iter().peekable();
+        for (j, smaller) in (0..).zip(smaller) {
+            let mut list = |i: u32| {
+                let end = &mut start[i as usize + 1];
+                partner[*end as usize] = j;
+                *end += 1;
+            };
+            for (pieces, [number, begin, end]) in found.into_iter().zip(*smaller) {
+                if begin < end {
+                    let found = &pieces[number as usize].found.smaller;
+                    let of_sphere = &found[begin as usize..end as usize];
+                    of_sphere.iter().for_each(|&i| list(i));
+                }
+            }
+            while let Some(&(_, i)) = more.next_if(|&&(of, _)| of == j) {
+                list(i);
+            }
         }
+        start.truncate(spheres + 1);
     }
 }
 
-/// Some rows of a list that is being made.
+/// For some spheres those near them whose numbers are smaller.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Found {
+    smaller: Vec<u32>,
+    /// Each of the spheres, and where those near it end.
+    ends: Vec<(u32, u32)>,
+}
+
+impl Found {
+    /// Keeps the pairs i < j that `admits` admits.
+    pub(super) fn retain(&mut self, admits: impl Fn(usize, usize) -> bool) {
+        let (mut begin, mut kept) = (0, 0);
+        for (j, end) in &mut self.ends {
+            for at in begin..*end as usize {
+                let i = self.smaller[at];
+                self.smaller[kept] = i;
+                kept += usize::from(admits(i as usize, *j as usize));
+            }
+            begin = *end as usize;
+            *end = kept as u32;
+        }
+        self.smaller.truncate(kept);
+    }
+}
+
+/// Some cells whose spheres are searched for.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Piece {
-    pub(super) rows: core::ops::Range<usize>,
-    /// Where each row ends in `partner`.
-    ends: Vec<u32>,
-    partner: Vec<u32>,
-    /// Row and place of each pair of the list before that remembers a contact.
-    pub(super) remembered: Vec<(u32, u32)>,
+    pub(super) cells: Range<usize>,
+    pub(super) found: Found,
+    /// The spheres in a cell and beside it.
+    around: Side,
 }
 
 /// Rectangular cells of a tube, at least `cutoff` wide; beyond the outermost cells across the tube a sphere belongs to
@@ -112,13 +178,14 @@ impl Grid {
         beside.into_iter().flatten()
     }
 
-    /// Cells at least as wide as the farthest pair of a rule.
+    /// Cells at least as wide as the farthest pair of a rule with this skin.
     pub(super) fn of<F: Fn(usize, usize) -> bool>(
         position: &[DVec3],
         rule: &PairRule<'_, F>,
+        skin: f64,
     ) -> Self {
         let largest_diameter = rule.diameter.iter().copied().fold(0.0, f64::max);
-        let cutoff = largest_diameter + rule.skin;
+        let cutoff = largest_diameter + skin;
         // Spheres that fly away must not stretch the grid without bound.
         let farthest = position
             .iter()
@@ -150,13 +217,12 @@ impl Grid {
     }
 
     pub(crate) fn cell(&self, position: DVec3) -> [u32; 3] {
+        // What is less than 0 becomes 0.
         let across = |coordinate: f64| {
-            let cell = ((coordinate + self.half_width) * self.per_across).floor();
-            cell.clamp(0.0, f64::from(self.across - 1)) as u32
+            let cell = (coordinate + self.half_width) * self.per_across;
+            (cell as u32).min(self.across - 1)
         };
-        let along = (position.z * self.per_along)
-            .floor()
-            .clamp(0.0, f64::from(self.along - 1)) as u32;
+        let along = ((position.z * self.per_along) as u32).min(self.along - 1);
         [across(position.x), across(position.y), along]
     }
 
@@ -165,28 +231,60 @@ impl Grid {
     }
 }
 
+/// Spheres side by side, with room for eight more.
+#[derive(Clone, Debug, Default)]
+struct Side {
+    place: Columns,
+    radius: Vec<f64>,
+    number: Vec<u32>,
+    /// The numbers once more, to be compared in lanes.
+    number_in_lanes: Vec<f64>,
+}
+
+impl Side {
+    /// Makes room for so many.
+    fn resize(&mut self, spheres: usize) {
+        for column in self.place.each() {
+            column.resize(spheres + LANES, 0.0);
+        }
+        self.radius.resize(spheres + LANES, 0.0);
+        self.number.resize(spheres + LANES, 0);
+        self.number_in_lanes.resize(spheres + LANES, 0.0);
+    }
+
+    /// Copies the eight from place `from` on of others to place `to` and on.
+    #[inline(always)]
+    fn copy<M: Machine>(&mut self, to: usize, others: &Self, from: usize) {
+        self.place.store(to, others.place.load::<M>(from));
+        Lanes::<M>::load(&others.radius, from).store(&mut self.radius, to);
+        Lanes::<M>::load(&others.number_in_lanes, from).store(&mut self.number_in_lanes, to);
+        self.number[to..to + LANES].copy_from_slice(&others.number[from..from + LANES]);
+    }
+}
+
 /// Spheres in the order of their cells; in a cell by their numbers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
     grid: Grid,
     cell_of: Vec<u32>,
-    /// Cell c holds the places `start[c]..start[c + 1]` of the columns.
+    /// Cell c holds the places `start[c]..start[c + 1]`.
     start: Vec<u32>,
-    number: Vec<u32>,
-    place: Columns,
-    radius: Vec<f64>,
-    /// The numbers once more, to be compared in lanes.
-    number_in_lanes: Vec<f64>,
+    spheres: Side,
 }
 
 impl Cells {
-    /// Counting sort of the spheres from number `first` on into the cells of a grid.
-    pub(super) fn sort(&mut self, grid: Grid, position: &[DVec3], diameter: &[f64], first: usize) {
+    /// Counting sort of some spheres into the cells of a grid.
+    pub(super) fn sort(
+        &mut self,
+        grid: Grid,
+        position: &[DVec3],
+        diameter: &[f64],
+        numbers: Range<usize>,
+    ) {
         self.grid = grid;
         let (grid, start) = (&self.grid, &mut self.start);
-        let spheres = position.len() - first;
         self.cell_of.clear();
-        let cells = position[first..]
+        let cells = position[numbers.clone()]
             .iter()
             .map(|&p| grid.index(grid.cell(p)) as u32);
         self.cell_of.extend(cells);
@@ -200,162 +298,129 @@ impl Cells {
             end += *start;
             *start = end;
         }
+        self.spheres.resize(numbers.len());
         // Filling backwards brings each cell's end down to its start.
-        self.number.clear();
-        self.number.resize(spheres + LANES, 0);
-        for (sphere, &cell) in self.cell_of.iter().enumerate().rev() {
+        for (sphere, &cell) in numbers.zip(&self.cell_of).rev() {
             let place = &mut start[cell as usize];
             *place -= 1;
-            self.number[*place as usize] = (first + sphere) as u32;
+            let at = *place as usize;
+            self.spheres.place.set(at, position[sphere]);
+            self.spheres.radius[at] = 0.5 * diameter[sphere];
+            self.spheres.number[at] = sphere as u32;
+            self.spheres.number_in_lanes[at] = sphere as f64;
         }
-        let filled = self.number[..spheres].iter().map(|&number| number as usize);
-        self.place.clear(spheres + LANES);
-        for (place, sphere) in filled.clone().enumerate() {
-            self.place.set(place, position[sphere]);
+    }
+
+    pub(super) fn number(&self) -> usize {
+        self.grid.cells()
+    }
+
+    fn of_cell(&self, cell: usize) -> Range<usize> {
+        self.start[cell] as usize..self.start[cell + 1] as usize
+    }
+
+    /// Copies the spheres in a cell and beside it; answers how many there are.
+    #[inline(always)]
+    fn gather<M: Machine>(&self, cell: usize, around: &mut Side) -> usize {
+        let grid = &self.grid;
+        let across = grid.across as usize;
+        let (x, y) = ((cell % across) as u32, (cell / across % across) as u32);
+        let z = (cell / (across * across)) as u32;
+        let (first_x, last_x) = grid.beside(x).into_inner();
+        let mut number = 0;
+        for z in grid.beside_along(z) {
+            for y in grid.beside(y) {
+                // Cells beside each other across the tube are beside each other in the columns.
+                let from = self.start[grid.index([first_x, y, z])] as usize;
+                let to = self.start[grid.index([last_x, y, z]) + 1] as usize;
+                let whole = number + to - from;
+                if around.number.len() < whole + 2 * LANES {
+                    around.resize(2 * whole + 2 * LANES);
+                }
+                for block in (from..to).step_by(LANES) {
+                    around.copy::<M>(number + block - from, &self.spheres, block);
+                }
+                number = whole;
+            }
         }
-        self.radius.clear();
-        self.radius
-            .extend(filled.map(|sphere| 0.5 * diameter[sphere]));
-        self.radius.resize(spheres + LANES, 0.0);
-        self.number_in_lanes.clear();
-        self.number_in_lanes
-            .extend(self.number.iter().map(|&number| f64::from(number)));
+        // Behind the last no number is smaller.
+        Lanes::<M>::splat(f64::INFINITY).store(&mut around.number_in_lanes, number);
+        number
     }
 }
 
-/// The search for the pairs of a rule in some rows, row by row.
-pub(super) struct Search<'a, H, F: Fn(usize, usize) -> bool> {
-    /// All spheres.
+/// The search, in some cells, for pairs i < j nearer than (d_i + d_j)/2 + skin.
+pub(super) struct Search<'a> {
+    /// The spheres i.
     pub(super) cells: &'a Cells,
-    /// Those alone of whose pairs not all are admitted, in the same grid.
-    pub(super) late_cells: &'a Cells,
-    pub(super) position: &'a [DVec3],
-    pub(super) rule: &'a PairRule<'a, F>,
-    /// The list before.
-    pub(super) old: &'a Rows<H>,
+    /// The spheres j, in the same grid.
+    pub(super) of: &'a [&'a Cells],
+    pub(super) skin: f64,
+    /// Period of the tube \[d\].
+    pub(super) length: f64,
     pub(super) piece: &'a mut Piece,
 }
 
-impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H, F> {
+impl Work for Search<'_> {
     type Answer = ();
 
     #[inline(always)]
     fn run<M: Machine>(self) {
         let Self {
             cells,
-            late_cells,
-            position,
-            rule,
-            old,
+            of,
+            skin,
+            length,
             piece,
         } = self;
         let Piece {
-            rows,
-            ends,
-            partner,
-            remembered,
+            cells: these,
+            found: Found { smaller, ends },
+            around,
         } = piece;
         ends.clear();
-        remembered.clear();
-        partner.clear();
-        let grid = &cells.grid;
-        partner.resize(partner.capacity().max(64 * LANES), 0);
+        let (half, whole) = (Lanes::<M>::splat(0.5 * length), Lanes::splat(length));
         let mut end = 0;
-        for i in rows.clone() {
-            let centre = position[i];
-            let begin = end;
-            // Partners have larger numbers.
-            let cells = if i < rule.admits_all_below {
-                cells
-            } else {
-                late_cells
-            };
-            let [cx, cy, cz] = grid.cell(centre);
-            let (first_x, last_x) = grid.beside(cx).into_inner();
-            let place = LaneVector::<M>::new(
-                Lanes::splat(centre.x),
-                Lanes::splat(centre.y),
-                Lanes::splat(centre.z),
-            );
-            let reach = Lanes::splat(0.5 * rule.diameter[i] + rule.skin);
-            let this = Lanes::splat(i as f64);
-            let (half, whole) = (Lanes::splat(0.5 * rule.length), Lanes::splat(rule.length));
-            for z in grid.beside_along(cz) {
-                for y in grid.beside(cy) {
-                    // Cells beside each other across the tube are beside each other in the columns.
-                    let from = cells.start[grid.index([first_x, y, z])] as usize;
-                    let to = cells.start[grid.index([last_x, y, z]) + 1] as usize;
-                    for block in (from..to).step_by(LANES) {
-                        let mut separation = place - cells.place.load(block);
+        for cell in these.clone() {
+            if of.iter().all(|of| of.of_cell(cell).is_empty()) {
+                continue;
+            }
+            let number = cells.gather::<M>(cell, around);
+            for of in of {
+                for j in of.of_cell(cell) {
+                    if smaller.len() < end + number + LANES {
+                        smaller.resize(2 * (end + number) + 64 * LANES, 0);
+                    }
+                    let centre = of.spheres.place.get(j);
+                    let place = LaneVector::<M>::new(
+                        Lanes::splat(centre.x),
+                        Lanes::splat(centre.y),
+                        Lanes::splat(centre.z),
+                    );
+                    let reach = Lanes::splat(of.spheres.radius[j] + skin);
+                    let this = Lanes::splat(of.spheres.number_in_lanes[j]);
+                    for block in (0..number).step_by(LANES) {
+                        let mut separation = place - around.place.load(block);
                         separation.z = separation.z.abs();
                         separation.z = Lanes::select(
                             half.less(separation.z),
                             whole - separation.z,
                             separation.z,
                         );
-                        let reach = reach + Lanes::load(&cells.radius, block);
+                        let reach = reach + Lanes::load(&around.radius, block);
                         let near = separation.squared().less(reach * reach)
-                            & this.less(Lanes::load(&cells.number_in_lanes, block))
-                            & Mask::first(to - block);
-                        let numbers = &cells.number[block..block + LANES];
+                            & Lanes::load(&around.number_in_lanes, block).less(this);
+                        let numbers = &around.number[block..block + LANES];
                         near.choose(
                             numbers.first_chunk().expect("a block of numbers"),
-                            partner[end..].first_chunk_mut().expect("room for a block"),
+                            smaller[end..].first_chunk_mut().expect("room for a block"),
                         );
                         end += near.count() as usize;
-                        if end + LANES > partner.len() {
-                            partner.resize(2 * partner.len(), 0);
-                        }
                     }
+                    ends.push((of.spheres.number[j], end as u32));
                 }
             }
-            if i >= rule.admits_all_below {
-                let mut kept = begin;
-                for at in begin..end {
-                    partner[kept] = partner[at];
-                    kept += usize::from((rule.admits)(i, partner[at] as usize));
-                }
-                end = kept;
-            }
-            // A contact that ended in this very step is listed once more, however far its spheres have jumped: what it
-            // remembers must be accounted for.
-            let near = end;
-            if i + 1 < old.start.len() {
-                for at in old.range(i) {
-                    if old.history[at] == H::default() {
-                        continue;
-                    }
-                    remembered.push((i as u32, at as u32));
-                    if !partner[begin..near].contains(&old.partner[at]) {
-                        partner[end] = old.partner[at];
-                        end += 1;
-                        if end + LANES > partner.len() {
-                            partner.resize(2 * partner.len(), 0);
-                        }
-                    }
-                }
-            }
-            sort(&mut partner[begin..end]);
-            ends.push(end as u32);
         }
-        partner.truncate(end);
-    }
-}
-
-/// Sorts a few numbers.
-#[inline(always)]
-fn sort(numbers: &mut [u32]) {
-    if numbers.len() > 24 {
-        numbers.sort_unstable();
-        return;
-    }
-    for end in 1..numbers.len() {
-        let number = numbers[end];
-        let mut at = end;
-        while at > 0 && numbers[at - 1] > number {
-            numbers[at] = numbers[at - 1];
-            at -= 1;
-        }
-        numbers[at] = number;
+        smaller.truncate(end);
     }
 }

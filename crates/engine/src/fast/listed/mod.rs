@@ -50,6 +50,8 @@ pub(crate) struct Scratch {
     stretch_of: Vec<u16>,
     /// The listed pairs of each stretch.
     pairs: Vec<Pairs>,
+    /// Places in the list of all that remember a contact.
+    held: Vec<u32>,
 }
 
 /// The list is made for so many skins.
@@ -96,19 +98,12 @@ struct Listed<'a, N, T: PackedHistory> {
 }
 
 impl Scratch {
-    /// Makes the flat lists from the rows; `held` are the places of all histories but fresh ones, where they are known.
-    fn load_pairs<N, T: PackedHistory>(
-        &mut self,
-        reference: &Reference<'_, N, T>,
-        held: Option<&[u32]>,
-    ) {
-        let Reference {
-            contacts, bodies, ..
-        } = reference;
-        let (list, bodies) = (&contacts.pairs, &**bodies);
+    /// Makes the flat lists from the rows, without histories.
+    fn load_pairs<N, T: PackedHistory>(&mut self, reference: &Reference<'_, N, T>) {
+        let (list, bodies) = (&reference.contacts.pairs, &*reference.bodies);
         self.threads
             .each(&mut self.pairs, (), &|_| 0, &|pairs, ()| {
-                pairs.load::<T>(list, bodies, held);
+                pairs.load::<T>(list, bodies);
             });
     }
 
@@ -131,15 +126,13 @@ impl Scratch {
 
     /// Writes the histories back to where they came from.
     fn store_histories<T: PackedHistory>(
-        &mut self,
+        &self,
         contacts: &mut Contacts<T::History<f64>>,
         beside_wall: &[BesideWall<T::History<f64>>],
     ) {
-        let histories = contacts.pairs.histories_mut();
-        let listed = |pairs: &Pairs| pairs.listed;
-        let store = |pairs: &mut Pairs, own: &mut [_]| pairs.store::<T>(own);
-        self.threads
-            .each(&mut self.pairs, histories, &listed, &store);
+        for pairs in &self.pairs {
+            pairs.store::<T>(contacts.pairs.histories_mut());
+        }
         if !beside_wall.is_empty() {
             contacts.wall = WallMemory::default();
             for stretch in beside_wall {
@@ -179,7 +172,10 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
                 sums: Waiting::default(),
             }));
         }
-        scratch.load_pairs(&reference, None);
+        scratch.load_pairs(&reference);
+        for pairs in &mut scratch.pairs {
+            pairs.take_up::<T>(reference.contacts.pairs.histories_mut());
+        }
         Self {
             reference,
             scratch,
@@ -237,10 +233,20 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         let drift = self.scratch.drift(&contacts.pairs, length);
         if !contacts.pairs.covers(bodies.number(), drift, CHOSEN * skin) {
             self.scratch.spheres.store_places(bodies);
-            self.scratch.store_histories::<T>(contacts, &[]);
-            contacts.rebuild(bodies, wall, LISTED * skin, &self.scratch.threads);
-            let held = Some(self.reference.contacts.pairs.moved());
-            self.scratch.load_pairs(&self.reference, held);
+            let Scratch {
+                threads,
+                pairs,
+                held,
+                ..
+            } = &mut *self.scratch;
+            held.clear();
+            pairs.iter_mut().for_each(|pairs| pairs.hand_over(held));
+            contacts.rebuild(bodies, wall, LISTED * skin, Some(held), threads);
+            self.scratch.load_pairs(&self.reference);
+            let places = self.reference.contacts.pairs.moved();
+            for pairs in &mut self.scratch.pairs {
+                pairs.carry_on(places);
+            }
         }
         let Scratch {
             instructions,

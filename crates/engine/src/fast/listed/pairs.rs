@@ -97,8 +97,9 @@ impl Flat {
 pub(super) struct Pairs {
     /// Spheres whose rows these are: all grains, or all of the wall.
     pub(super) rows: Range<usize>,
-    /// How many pairs of the list are in them.
-    pub(super) listed: usize,
+    /// The first pair of the list that is in them, and how many are.
+    first: usize,
+    listed: usize,
     list: Flat,
     /// The pairs that may touch before others are chosen.
     pub(super) near: Flat,
@@ -111,8 +112,8 @@ pub(super) struct Pairs {
     now: u8,
     /// The pairs that touched at the last evaluation: only they have a history.
     pub(super) touched: Vec<u32>,
-    /// Those that did so when they were taken from the rows.
-    loaded: Vec<u32>,
+    /// Their histories, on the way from one list to the next.
+    carried: Vec<Packed>,
     /// The near pairs that touch.
     pub(super) touching: Vec<u32>,
     /// Energy of the tangential springs of contacts that have ended in this step.
@@ -122,20 +123,15 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Makes the flat list from the rows; `held` are the places in the list of all
-    /// histories but fresh ones, where they are known.
+    /// Makes the flat list from the rows, without histories.
     pub(super) fn load<T: PackedHistory>(
         &mut self,
         list: &Neighbours<T::History<f64>>,
         bodies: &Bodies,
-        held: Option<&[u32]>,
     ) {
-        let rows = &self.rows;
-        let of_grains = rows.start < bodies.grains;
-        let listed = rows.start.min(list.rows())..rows.end.min(list.rows());
-        let pairs = list.pairs_above(listed.start)..list.pairs_above(listed.end);
-        self.listed = pairs.len();
-        self.list.load(list, listed, &bodies.diameter);
+        let listed = self.listed_rows(list);
+        self.first = list.pairs_above(listed.start);
+        self.listed = list.pairs_above(listed.end) - self.first;
         // All others are fresh already.
         for &k in &self.touched {
             self.histories[k as usize] = Packed::default();
@@ -143,36 +139,54 @@ impl Pairs {
         self.touched.clear();
         self.stamp.clear();
         // Wall against wall has no friction.
-        if T::ROTATES && of_grains {
-            let histories = &list.histories()[pairs.clone()];
-            self.histories.resize(histories.len(), Packed::default());
-            self.stamp.resize(histories.len(), self.now.wrapping_sub(1));
-            let mut hold = |k: usize| {
-                self.histories[k] = T::pack(&histories[k]);
-                self.touched.push(k as u32);
-            };
-            if let Some(held) = held {
-                let first = held.partition_point(|&at| (at as usize) < pairs.start);
-                let held = held[first..].iter().map(|&at| at as usize);
-                let own = held.take_while(|&at| at < pairs.end);
-                own.for_each(|at| hold(at - pairs.start));
-            } else {
-                let fresh = T::History::<f64>::default();
-                (0..histories.len())
-                    .filter(|&k| histories[k] != fresh)
-                    .for_each(hold);
-            }
+        if T::ROTATES && self.rows.start < bodies.grains {
+            self.histories.resize(self.listed, Packed::default());
+            self.stamp.resize(self.listed, self.now.wrapping_sub(1));
         }
-        self.loaded.clone_from(&self.touched);
+        self.list.load(list, listed, &bodies.diameter);
     }
 
-    /// Writes the histories back to those of the rows.
-    pub(super) fn store<T: PackedHistory>(&self, histories: &mut [T::History<f64>]) {
-        for &k in &self.loaded {
-            histories[k as usize] = T::History::<f64>::default();
+    fn listed_rows<H: Copy + Default + PartialEq>(&self, list: &Neighbours<H>) -> Range<usize> {
+        self.rows.start.min(list.rows())..self.rows.end.min(list.rows())
+    }
+
+    /// Takes the histories of its pairs out of those of the rows.
+    pub(super) fn take_up<T: PackedHistory>(&mut self, histories: &mut [T::History<f64>]) {
+        let histories = &mut histories[self.first..self.first + self.listed];
+        for (k, (packed, history)) in self.histories.iter_mut().zip(histories).enumerate() {
+            if *history != T::History::<f64>::default() {
+                *packed = T::pack(&core::mem::take(history));
+                self.touched.push(k as u32);
+            }
         }
+    }
+
+    /// Takes its histories out, to be put into another list.
+    pub(super) fn hand_over(&mut self, places: &mut Vec<u32>) {
+        let Self {
+            histories, touched, ..
+        } = self;
+        self.carried.clear();
+        let of = |&k: &u32| core::mem::take(&mut histories[k as usize]);
+        self.carried.extend(touched.iter().map(of));
+        places.extend(touched.iter().map(|k| self.first as u32 + k));
+        touched.clear();
+    }
+
+    /// Puts them in at their places in the new list, those of all stretches.
+    pub(super) fn carry_on(&mut self, places: &[u32]) {
+        let begin = places.partition_point(|&at| (at as usize) < self.first);
+        for (packed, at) in self.carried.iter().zip(&places[begin..]) {
+            let k = at - self.first as u32;
+            self.histories[k as usize] = *packed;
+            self.touched.push(k);
+        }
+    }
+
+    /// Writes the histories back to those of the rows, which are fresh.
+    pub(super) fn store<T: PackedHistory>(&self, histories: &mut [T::History<f64>]) {
         for &k in &self.touched {
-            histories[k as usize] = T::unpack(&self.histories[k as usize]);
+            histories[self.first + k as usize] = T::unpack(&self.histories[k as usize]);
         }
     }
 
