@@ -69,8 +69,9 @@ pub struct Pumping {
 }
 
 impl Pumping {
-    /// Of the late samples of a run; `None` without a body force along the wave.
-    pub(super) fn of(configuration: &Configuration, late: &[Sample]) -> Option<Self> {
+    /// Of the late samples of a run in a tube of this length, of an open one that between its ends; `None` without a body force
+    /// along the wave.
+    pub(super) fn of(configuration: &Configuration, length: f64, late: &[Sample]) -> Option<Self> {
         let force = configuration.axial_body_force();
         if force == 0.0 {
             return None;
@@ -95,8 +96,9 @@ impl Pumping {
             Some(_) => mean_of(late, |sample| sample.hold_up) / total_mass(configuration),
             None => 1.0,
         };
+        let crowded = in_tube * configuration.tube.length() / length;
         Some(Self {
-            pressure_rise: in_tube * configuration.pressure_rise(),
+            pressure_rise: crowded * configuration.pressure_rise(),
             useful_power: (useful_power, power_error),
             efficiency: (efficiency, error_of(late.iter().map(beyond)) / wall_power),
         })
@@ -217,7 +219,8 @@ mod tests {
                 wall_power,
                 ..Sample::default()
             });
-            Pumping::of(&configuration, &late).unwrap()
+            let length = configuration.tube.length();
+            Pumping::of(&configuration, length, &late).unwrap()
         };
         let pumped = pumping(0.2, 0.8);
         assert!((pumped.efficiency.0 - 0.25).abs() < 1e-12);

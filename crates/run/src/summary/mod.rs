@@ -144,7 +144,7 @@ impl Summary {
             escaped_most: recorder.escaped_most() as u64,
             largest_overlap: simulation.ledger().largest_overlap,
             energy_residual: simulation.energy_residual(),
-            pumping: Pumping::of(configuration, late),
+            pumping: Pumping::of(configuration, length, late),
             discharge: Discharge::of(run, late),
             wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
             wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
