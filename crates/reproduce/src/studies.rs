@@ -117,6 +117,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("near-coarse"),
     study!("near-fine"),
     study!("near-aligned"),
+    study!("near-disordered"),
     study!("branches-12x16"),
     study!("branches-fine"),
     study!("branches-coarse"),

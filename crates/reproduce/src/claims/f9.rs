@@ -78,7 +78,7 @@ struct Loop<'a> {
     critical: Uncertain,
     jumps: bool,
     outcomes: Vec<Outcomes>,
-    runs: usize,
+    rows: Vec<Row<'a>>,
 }
 
 impl<'a> AtRate<'a> for Loop<'a> {
@@ -91,18 +91,20 @@ impl<'a> AtRate<'a> for Loop<'a> {
         Some(Self {
             jumps: flow.rest.jumps(),
             outcomes: outcomes.collect(),
-            runs: runs.branches.len(),
+            rows: runs.branches.clone(),
             critical,
             flow,
         })
     }
 
     fn statistics(&self) -> Statistics {
-        let both = self.flow.each().map(|branch| branch.statistics(0));
-        Statistics {
-            runs: self.runs,
-            ..Statistics::weakest_at_one_rate(both.into_iter())
-        }
+        // A width at which replicates ended in both flows is on no branch, but the test compares its runs.
+        let of = |start: Start| {
+            let rows = self.rows.iter().filter(|row| row.start() == start);
+            Statistics::at_one_rate(rows.map(Row::width))
+        };
+        let both = [of(Start::Rest), of(Start::Jammed)];
+        Statistics::weakest_at_one_rate(both.into_iter())
     }
 }
 

@@ -149,7 +149,8 @@ fn section(examination: &Examination, file: Option<&str>, figures: &str) -> Stri
     text
 }
 
-/// The table of a section: what the walls show; or the first table, unless it is large; or the most important numbers.
+/// The table of a section: what the walls show; or the first table, unless it is large; or the most important numbers that
+/// its paragraph does not say.
 fn digest(finding: &Finding) -> Option<ReportTable> {
     let first = finding.tables.first();
     let small = first.filter(|one| (1..=MOST_CELLS).contains(&(one.head.len() * one.rows.len())));
@@ -167,7 +168,12 @@ fn digest(finding: &Finding) -> Option<ReportTable> {
     } else if let Some(small) = small {
         small.clone()
     } else {
+        let is_said = |one: &&Quantity| {
+            let ours = one.ours.as_ref().map(ToString::to_string);
+            one.source.is_none() && ours.is_some_and(|ours| finding.summary.contains(&ours))
+        };
         let quantities = finding.quantities.iter().take(MOST_NUMBERS);
+        let quantities = quantities.filter(|one| !is_said(one));
         let is_sourced = quantities.clone().any(|one| one.source.is_some());
         let shown = if is_sourced { 3 } else { 2 };
         let rows = quantities.map(|one| cells(one)[..shown].to_vec());
