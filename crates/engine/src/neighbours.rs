@@ -13,7 +13,7 @@ use self::cells::{Cells, Grid, Piece, Rows, Search};
 use crate::fast::machine::Instructions;
 use crate::fast::threads::{PER_THREAD, Threads};
 
-/// Pairs whose spheres are both late are seldom near, so their search goes farther \[d\] and serves several lists.
+/// Pairs of [`Late`] spheres are seldom near, so the search for them goes farther than the skin \[d\] and serves several lists.
 const FARTHER: f64 = 1.0;
 
 /// Rows of partners with a value of type `H` beside each pair.
@@ -40,7 +40,8 @@ pub(crate) struct Neighbours<H> {
     moved: Vec<u32>,
 }
 
-/// The spheres of whose pairs not all are admitted, as they were when those pairs were searched for.
+/// The last spheres, of whose pairs with each other not all are admitted (those of an elastic wall), as they were when these
+/// pairs were searched for.
 #[derive(Clone, Debug, Default)]
 struct Late {
     /// Number of the first.

@@ -47,8 +47,8 @@ impl<H> Rows<H> {
         Some(range.start + place)
     }
 
-    /// Rows of so many spheres, without values, from the smaller partners that two searches found of each, and from `more`
-    /// pairs (j, i), j > i, which stand in the order of j.
+    /// Makes the rows of so many spheres, without values, from the partners i < j of each sphere j that two searches found,
+    /// and from `more` pairs (j, i), in the order of j. Taking the spheres j in order leaves every row in order.
     pub(super) fn turn(
         &mut self,
         spheres: usize,
@@ -109,7 +109,7 @@ impl<H> Rows<H> {
     }
 }
 
-/// For some spheres those near them whose numbers are smaller.
+/// Of each of some spheres those near it whose numbers are smaller.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Found {
     smaller: Vec<u32>,
