@@ -20,7 +20,7 @@ pub(crate) struct Apart {
     pub(crate) forces: f64,
     /// In units of the largest torque, or of the largest overlap where torques cancel.
     pub(crate) torques: f64,
-    /// Of all numbers that contacts remember.
+    /// Of all numbers that contacts remember; in units of those above 1.
     pub(crate) histories: f64,
     /// Of the fields of [`Tally`], each in units of its value, or of what adds up to it where terms cancel.
     pub(crate) tally: f64,
@@ -157,7 +157,7 @@ fn histories(expected: &Simulation, found: &Simulation) -> f64 {
             (other.0, other.1, other.2.sliding)
         );
         let pairs = numbers(one.2).into_iter().zip(numbers(other.2));
-        pairs.map(|(a, b)| (a - b).abs())
+        pairs.map(|(a, b)| (a - b).abs() / a.abs().max(1.0))
     });
     most(apart)
 }

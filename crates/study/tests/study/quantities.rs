@@ -27,7 +27,7 @@ fn page() -> String {
         .map(|column| row(&column.name, column.unit, column.text))
         .collect();
     format!(
-        "# Reference: quantities\n\n\
+        "# Reference: columns and numbers\n\n\
          Units are d, m and t; `1` is a pure number. \"Late\" is the last part of a run. A missing number is `null`.\n\n\
          ## The outcome of a run\n\n\
          The rows of a study have these columns, besides `identity` and `replicate`. `summary.json` has them as keys, some \
