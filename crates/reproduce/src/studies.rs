@@ -125,6 +125,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("branches-disordered"),
     study!("loop-coarse"),
     study!("loop-aligned"),
+    study!("loop-disordered"),
     study!("dense-jams"),
     study!("flow-in-time"),
     study!("second-moment"),
