@@ -23,9 +23,6 @@ const RESUMMED: [&str; 3] = [
     "wall_pressure",
     "wall_pressure_largest",
 ];
-/// The program whose rows, those of the study pumping-frictional among them, hold an efficiency also of what does not pump,
-/// which is none now, and the middle of the wave for a flat belly.
-const REDEFINED: &str = "38f22cc1bd75";
 /// Largest relative difference that the order of a sum makes there: a variance is a small difference of large numbers.
 const ROUNDING: f64 = 1e-9;
 
@@ -36,8 +33,7 @@ pub struct RowDifference {
     pub column: String,
     /// The published value and the one that was computed again.
     pub values: [String; 2],
-    /// Whether the program of the published row is known to have computed the column otherwise: it added up a sum in another
-    /// order, or defined the column in another way.
+    /// Whether the program of the published row is known to have added up the sum in another order.
     pub is_known: bool,
 }
 
@@ -48,9 +44,7 @@ impl Row {
         let number = |row: &Self, name: &str| row.table().reals(name).map_or(f64::NAN, |it| it[0]);
         let is_older = number(self, "late_periods").is_nan();
         let revision = |row: &Self| row.table().texts("revision").map(|it| it[0].clone()).ok();
-        let published_by = revision(self);
-        let is_of_other = published_by != revision(computed);
-        let is_redefined = published_by.as_deref() == Some(REDEFINED);
+        let is_of_other = revision(self) != revision(computed);
         let mut differences = Vec::new();
         for column in self.table().columns() {
             let name = column.name.as_str();
@@ -75,11 +69,7 @@ impl Row {
                     column: name.to_owned(),
                     values: [Some(&column.values), there]
                         .map(|values| values.map_or_else(String::new, written)),
-                    is_known: is_of_other && is_near && RESUMMED.contains(&name)
-                        || is_redefined && name.starts_with("belly_")
-                        || is_redefined
-                            && name.starts_with("pumping_efficiency")
-                            && there_number.is_nan(),
+                    is_known: is_of_other && is_near && RESUMMED.contains(&name),
                 });
             }
         }
@@ -139,15 +129,6 @@ mod tests {
             known(&row, &with(&[other[0], ("wall_pressure", "0.500001")])),
             [false]
         );
-        let pump = [
-            ("revision", "\"38f22cc1bd75\""),
-            ("pumping_efficiency", "-3.0"),
-        ];
-        let none = with(&[("pumping_efficiency", "")]);
-        assert_eq!(known(&with(&pump), &none), [true]);
-        assert_eq!(known(&with(&pump[1..]), &none), [false]);
-        // Of what pumps there is but one efficiency.
-        assert_eq!(known(&with(&pump), &row), [false]);
         let older = with(&[("late_periods", ""), ("belly_density", "")]);
         assert_eq!(older.differences(&row), []);
         assert_eq!(with(&[("belly_density", "")]).differences(&row).len(), 1);
