@@ -192,7 +192,7 @@ impl Matched {
 
     fn row(&self) -> Vec<String> {
         let [frictional, frictionless] = self.means().map(|mean| mean.to_string());
-        let beyond = |(beyond, pairs): (usize, usize)| format!("{beyond} of {pairs}");
+        let beyond = |(beyond, pairs): (usize, usize)| format!("{beyond}/{pairs}");
         vec![
             self.strain_rate.to_string(),
             number(self.bottleneck, 3),
@@ -258,20 +258,20 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
 
-/// Velocities in the throat of both models against the bottleneck.
+/// Velocities in the throat of both models against the bottleneck, a panel for each strain rate.
 fn throats(matched: &[Matched]) -> ChartFigure {
-    let model = |(place, name): (usize, &str)| {
-        let means = matched
-            .iter()
-            .map(|one| (one.bottleneck, one.means()[place]));
-        joined(name, means).map(|points| points.series(place))
-    };
-    let models = ["frictional", "frictionless"].into_iter().enumerate();
-    let panel = ChartPanel::new(
-        "bottleneck, *w*/2*a*",
-        "axial velocity in the throat, *v_z*/*c*",
-    );
-    ChartFigure::new(panel.with_all(models.flat_map(model)))
+    let panels = matched.chunk_by(|one, next| one.strain_rate == next.strain_rate);
+    let panels = panels.map(|here| {
+        let model = |(place, name): (usize, &str)| {
+            let means = here.iter().map(|one| (one.bottleneck, one.means()[place]));
+            joined(name, means).map(|points| points.series(place))
+        };
+        let models = ["frictional", "frictionless"].into_iter().enumerate();
+        let panel = ChartPanel::new("bottleneck, *w*/2*a*", "velocity, *v_z*/*c*");
+        let panel = panel.title(&format!("*ε̇* = {}", here[0].strain_rate));
+        panel.with_all(models.flat_map(model))
+    });
+    ChartFigure::grid(1, panels).share_x()
 }
 
 /// To three digits behind the point.
