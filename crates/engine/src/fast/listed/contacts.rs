@@ -140,10 +140,7 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
         if T::ROTATES {
             contact.rotation = turning_i * arms.0 + turning_j * arms.1;
         }
-        let mut history = T::History::<Lanes<M>>::default();
-        if T::ROTATES {
-            history = T::into_lanes::<M>(pair.map(|k| &histories[k]));
-        }
+        let mut history = T::into_lanes::<M>(histories, pair);
         let answer = law.force(&contact, &mut history, time_step);
         let with_wall = Mask::from_bits(with_wall);
         outcome.add(terms(&answer, contact.overlap, with_wall, contacts));
@@ -160,12 +157,7 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
             true => outcome.take::<true>(eight),
             false => outcome.take::<false>(eight),
         }
-        if T::ROTATES {
-            let [first, second] = T::from_lanes::<M>(&history);
-            for lane in 0..contacts {
-                histories[pair[lane]] = [first[lane].record(), second[lane].record()];
-            }
-        }
+        T::from_lanes::<M>(&history, histories, &pair[..contacts]);
     }
 }
 

@@ -16,11 +16,15 @@ pub(crate) trait PackedHistory: TangentialLaw {
 
     fn unpack(packed: &[Record; 2]) -> Self::History<f64>;
 
-    /// Packed histories side by side.
-    fn into_lanes<M: Machine>(packed: [&[Record; 2]; LANES]) -> Self::History<Lanes<M>>;
+    /// Histories of a list, side by side.
+    fn into_lanes<M: Machine>(packed: &[Packed], at: [usize; LANES]) -> Self::History<Lanes<M>>;
 
-    /// The histories of all lanes, packed.
-    fn from_lanes<M: Machine>(history: &Self::History<Lanes<M>>) -> [[Quad<M>; LANES]; 2];
+    /// Packs the histories of the first so many lanes into the list.
+    fn from_lanes<M: Machine>(
+        history: &Self::History<Lanes<M>>,
+        packed: &mut [Packed],
+        at: &[usize],
+    );
 }
 
 impl PackedHistory for Frictionless {
@@ -31,12 +35,10 @@ impl PackedHistory for Frictionless {
     fn unpack(_: &Packed) {}
 
     #[inline(always)]
-    fn into_lanes<M: Machine>(_: [&Packed; LANES]) {}
+    fn into_lanes<M: Machine>(_: &[Packed], _: [usize; LANES]) {}
 
     #[inline(always)]
-    fn from_lanes<M: Machine>((): &()) -> [[Quad<M>; LANES]; 2] {
-        [[Quad::<M>::splat(0.0); LANES]; 2]
-    }
+    fn from_lanes<M: Machine>((): &(), _: &mut [Packed], _: &[usize]) {}
 }
 
 impl PackedHistory for CundallStrack {
@@ -57,12 +59,16 @@ impl PackedHistory for CundallStrack {
     }
 
     #[inline(always)]
-    fn into_lanes<M: Machine>(packed: [&Packed; LANES]) -> TangentialHistory<Lanes<M>> {
+    fn into_lanes<M: Machine>(
+        packed: &[Packed],
+        at: [usize; LANES],
+    ) -> TangentialHistory<Lanes<M>> {
         let mut first = [Quad::<M>::splat(0.0); LANES];
         let mut second = first;
         for lane in 0..LANES {
-            first[lane] = packed[lane][0].quad();
-            second[lane] = packed[lane][1].quad();
+            let [one, other] = &packed[at[lane]];
+            first[lane] = one.quad();
+            second[lane] = other.quad();
         }
         let (displacement, power) = record::into_lanes::<M>(first);
         let (rate, sliding) = record::into_lanes::<M>(second);
@@ -75,11 +81,16 @@ impl PackedHistory for CundallStrack {
     }
 
     #[inline(always)]
-    fn from_lanes<M: Machine>(history: &TangentialHistory<Lanes<M>>) -> [[Quad<M>; LANES]; 2] {
+    fn from_lanes<M: Machine>(
+        history: &TangentialHistory<Lanes<M>>,
+        packed: &mut [Packed],
+        at: &[usize],
+    ) {
         let sliding = Lanes::select(history.sliding, Lanes::splat(1.0), Lanes::splat(0.0));
-        [
-            record::from_lanes(history.displacement, history.power),
-            record::from_lanes(history.rate, sliding),
-        ]
+        let first = record::from_lanes(history.displacement, history.power);
+        let second = record::from_lanes(history.rate, sliding);
+        for (lane, &at) in at.iter().enumerate() {
+            packed[at] = [first[lane].record(), second[lane].record()];
+        }
     }
 }
