@@ -6,6 +6,8 @@
 
 pub(crate) mod cells;
 
+use core::ops::Range;
+
 use glam::DVec3;
 
 pub(crate) use self::cells::PairRule;
@@ -91,9 +93,9 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         )
     }
 
-    /// Number of pairs in the first so many rows.
-    pub(crate) fn pairs_above(&self, rows: usize) -> usize {
-        self.rows.start[rows] as usize
+    /// The places of the pairs of row i in the list.
+    pub(crate) fn range(&self, i: usize) -> Range<usize> {
+        self.rows.range(i)
     }
 
     /// Number of rows: spheres when the list was made.
@@ -107,6 +109,11 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     }
 
     /// The histories of all pairs, row after row.
+    pub(crate) fn histories(&self) -> &[H] {
+        &self.rows.history
+    }
+
+    /// The same, to be changed.
     pub(crate) fn histories_mut(&mut self) -> &mut [H] {
         &mut self.rows.history
     }
@@ -148,7 +155,8 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     ) -> bool {
         let unfolded = position.iter().zip(turns);
         let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * length));
-        self.origin.len() != position.len() || self.drift(0, unfolded).approach() > skin
+        self.origin.len() != position.len()
+            || Drift::of(unfolded.zip(&self.origin)).approach() > skin
     }
 
     /// Whether the list holds all admitted pairs of so many spheres that are now closer than (d_i + d_j)/2 + `skin`;
@@ -157,9 +165,11 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         self.origin.len() == spheres && drift.approach() + skin <= self.skin
     }
 
-    /// How far the spheres from number `first` on have gone since the list was made.
-    pub(crate) fn drift(&self, first: usize, unfolded: impl Iterator<Item = DVec3>) -> Drift {
-        Drift::of(unfolded, self.origin.get(first..).unwrap_or_default())
+    /// How far spheres, each with its number, have gone since the list was made.
+    pub(crate) fn drift(&self, unfolded: impl Iterator<Item = (DVec3, usize)>) -> Drift {
+        let here_and_there =
+            unfolded.filter_map(|(place, number)| Some((place, self.origin.get(number)?)));
+        Drift::of(here_and_there)
     }
 
     /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, perhaps some farther ones, and those that
@@ -239,7 +249,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         let late = &mut self.late;
         let unfolded = unfolded.skip(first);
         let same = late.first == first && late.origin.len() == position.len() - first;
-        let drift = Drift::of(unfolded.clone(), &late.origin);
+        let drift = Drift::of(unfolded.clone().zip(&late.origin));
         if same && drift.approach() + rule.skin <= late.skin {
             return;
         }
@@ -342,9 +352,9 @@ impl Drift {
     };
 
     /// Of spheres that are here now and were there.
-    fn of(here: impl Iterator<Item = DVec3>, there: &[DVec3]) -> Self {
+    fn of<'a>(here_and_there: impl Iterator<Item = (DVec3, &'a DVec3)>) -> Self {
         let mut drift = Self::NONE;
-        for (place, origin) in here.zip(there) {
+        for (place, origin) in here_and_there {
             let by = place - *origin;
             drift.lateral_squared = drift.lateral_squared.max(by.x * by.x + by.y * by.y);
             drift.least = drift.least.min(by.z);

@@ -28,7 +28,7 @@ pub fn processors() -> usize {
 }
 
 /// Stretches of work for each thread: one that is done early takes what others have not begun.
-pub(crate) const PER_THREAD: usize = 4;
+pub(crate) const PER_THREAD: usize = 2;
 
 /// Without work a thread stays awake for so long, then it looks again at such intervals: the parts of a step follow each
 /// other within some 10 us, and to wake a thread takes longer.
@@ -57,6 +57,12 @@ impl Cut for () {
 impl<T: Send> Cut for &mut [T] {
     fn cut(self, at: usize) -> (Self, Self) {
         self.split_at_mut(at)
+    }
+}
+
+impl<T: Sync> Cut for &[T] {
+    fn cut(self, at: usize) -> (Self, Self) {
+        self.split_at(at)
     }
 }
 

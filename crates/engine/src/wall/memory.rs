@@ -73,7 +73,7 @@ impl<H: Copy + Default> WallMemory<H> {
     }
 
     /// The memory of some of the grains, counted from 0.
-    pub(crate) fn part(&self, grains: core::ops::Range<usize>) -> Self {
+    pub(crate) fn part(&self, grains: impl Iterator<Item = usize> + Clone) -> Self {
         let ranges = grains.map(|grain| self.range(grain));
         let entries = ranges.clone().flat_map(|range| &self.entries[range]);
         let lengths = ranges.map(|range| range.len() as u32);
@@ -88,15 +88,14 @@ impl<H: Copy + Default> WallMemory<H> {
         }
     }
 
-    /// Takes the memory of the grains that follow its own.
-    pub(crate) fn append(&mut self, behind: &Self) {
+    /// Takes up, as that of the grain behind its own, the memory of a grain of another.
+    pub(crate) fn append(&mut self, other: &Self, grain: usize) {
         if self.start.is_empty() {
             self.start.push(0);
         }
-        let end = self.entries.len() as u32;
-        let starts = behind.start.iter().skip(1);
-        self.start.extend(starts.map(|start| end + start));
-        self.entries.extend_from_slice(&behind.entries);
+        self.entries
+            .extend_from_slice(&other.entries[other.range(grain)]);
+        self.start.push(self.entries.len() as u32);
     }
 
     /// Memory that holds the given histories, in order of the grains.

@@ -321,6 +321,7 @@ impl Wall {
                     }
                 }
             }
+            sums.end_grain();
         }
         if T::ROTATES {
             memory.end();

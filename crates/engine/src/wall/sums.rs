@@ -20,6 +20,8 @@ pub(crate) trait WallSums {
     fn add_ended(&mut self, energy: f64);
     /// Energies that rolling resistance and breaking cohesion took in this step, where the reference kernel computes.
     fn add_general(&mut self, _rolling: f64, _cohesion: f64) {}
+    /// All contacts of a grain are there.
+    fn end_grain(&mut self) {}
 }
 
 impl WallSums for Tally {
@@ -48,15 +50,30 @@ impl WallSums for Tally {
 pub(crate) struct Waiting {
     terms: Vec<WallTerms>,
     ended: Vec<f64>,
+    /// Where the terms of each grain end.
+    ends: Vec<[usize; 2]>,
+    /// The grain whose terms come next, and where they begin.
+    next: (usize, [usize; 2]),
 }
 
 impl Waiting {
-    /// Adds all terms, and forgets them.
-    pub(crate) fn add_to(&mut self, tally: &mut Tally) {
-        self.terms.drain(..).for_each(|terms| tally.add(&terms));
-        self.ended
-            .drain(..)
-            .for_each(|energy| tally.add_ended(energy));
+    /// Adds the terms of the next grain.
+    pub(crate) fn add_row(&mut self, tally: &mut Tally) {
+        let (grain, [begin, ended_begin]) = self.next;
+        let [end, ended_end] = self.ends[grain];
+        let terms = &self.terms[begin..end];
+        terms.iter().for_each(|terms| tally.add(terms));
+        let ended = &self.ended[ended_begin..ended_end];
+        ended.iter().for_each(|&energy| tally.add_ended(energy));
+        self.next = (grain + 1, [end, ended_end]);
+    }
+
+    /// Forgets all.
+    pub(crate) fn clear(&mut self) {
+        self.terms.clear();
+        self.ended.clear();
+        self.ends.clear();
+        self.next = Default::default();
     }
 }
 
@@ -67,5 +84,9 @@ impl WallSums for Waiting {
 
     fn add_ended(&mut self, energy: f64) {
         self.ended.push(energy);
+    }
+
+    fn end_grain(&mut self) {
+        self.ends.push([self.terms.len(), self.ended.len()]);
     }
 }

@@ -84,7 +84,7 @@ impl Default for CundallStrack {
 }
 
 /// Memory of a frictional contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(bound(
     serialize = "R: serde::Serialize, R::Vector: serde::Serialize, R::Mask: serde::Serialize",
     deserialize = "R: serde::Deserialize<'de>, R::Vector: serde::Deserialize<'de>, R::Mask: serde::Deserialize<'de>"
@@ -98,6 +98,19 @@ pub struct TangentialHistory<R: Real = f64> {
     pub power: R,
     /// Whether the contact slid at the end of the last step.
     pub sliding: R::Mask,
+}
+
+impl<R: Real> Default for TangentialHistory<R> {
+    // Derived, it would be a call in the kernels, for lanes.
+    #[inline(always)]
+    fn default() -> Self {
+        Self {
+            displacement: R::Vector::default(),
+            rate: R::Vector::default(),
+            power: R::default(),
+            sliding: R::Mask::default(),
+        }
+    }
 }
 
 impl<R: Real> TangentialHistory<R> {

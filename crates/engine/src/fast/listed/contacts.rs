@@ -3,43 +3,47 @@
 use peristalsis_physics::contact::{Contact, ContactForce, ContactLaw, NormalLaw};
 use peristalsis_physics::real::Real;
 
-use super::book::{Book, ContactTerms};
+use super::book::RowTerms;
 use super::history::PackedHistory;
 use super::pairs::Pairs;
 use super::record;
-use super::spheres::{ForcesMut, Moving};
-use crate::fast::lanes::{LANES, Lanes, Mask, Quad};
-use crate::fast::machine::{Machine, Work};
+use super::spheres::{Forces, Moving, Own};
+use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
+use crate::fast::machine::{Machine, Work, eight_of};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
 
 /// What becomes of the answers of the law.
-pub(super) trait Outcome<M: Machine> {
-    fn take<const ROTATES: bool>(&mut self, eight: Eight<M>);
-    fn add(&mut self, terms: ContactTerms<M>);
+trait Outcome<M: Machine> {
+    /// Where the forces on a sphere are added up.
+    fn at(&self, place: usize) -> usize;
+    fn add(&mut self, eight: &Eight<M>);
 }
 
 /// The answers for eight contacts, or for as many as there are.
-pub(super) struct Eight<M: Machine> {
-    pub(super) contacts: usize,
-    pub(super) first: [usize; LANES],
-    pub(super) second: [usize; LANES],
-    /// On the first sphere.
-    pub(super) forces: [Quad<M>; LANES],
-    pub(super) torques_per_arm: [Quad<M>; LANES],
-    /// Of the first spheres and of the second.
-    pub(super) arms: [[f64; LANES]; 2],
+struct Eight<M: Machine> {
+    contacts: usize,
+    /// Where the forces on their first spheres are added up.
+    rows: [usize; LANES],
+    answer: ContactForce<Lanes<M>>,
+    overlap: Lanes<M>,
+    /// Which are with the wall.
+    with_wall: Mask<M>,
 }
 
-/// Finds and works out the contacts of some rows of the list.
+/// Finds and works out the contacts of the spheres of a section.
 pub(super) struct PairForces<'a, N, T: PackedHistory> {
     pub(super) law: &'a ContactLaw<N, T>,
     pub(super) pairs: &'a mut Pairs,
+    pub(super) of_grains: bool,
     pub(super) spheres: Moving<'a>,
+    pub(super) forces: &'a mut Forces,
     pub(super) length: f64,
     pub(super) time_step: f64,
-    /// Where forces, torques and sums go at once; without it they become the answers of the pairs.
-    pub(super) at_once: Option<(ForcesMut<'a>, &'a mut Tally)>,
+    /// Where sums go at once, of the only section; without it they become the terms of the pairs.
+    pub(super) tally: Option<&'a mut Tally>,
+    /// Whether all sums are wanted.
+    pub(super) complete: bool,
 }
 
 impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
@@ -47,173 +51,212 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
 
     #[inline(always)]
     fn run<M: Machine>(mut self) {
-        self.pairs.answers.clear(0);
+        let own = self.forces.own;
+        self.pairs.terms.clear(0, 0, false);
         self.pairs.ended.clear();
         if self.pairs.near.first.is_empty() && self.pairs.touched.is_empty() {
             return;
         }
         let Pairs { near, touching, .. } = &mut *self.pairs;
         near.find::<M>(self.spheres.position, self.length, 0.0, touching);
-        let of_grains = self.pairs.rows.start < self.spheres.grains;
-        match self.at_once.take() {
-            Some((forces, tally)) => {
-                let sums = Sums::<M>::default();
-                let mut outcome = AtOnce { forces, sums };
-                self.work_out::<M>(of_grains, &mut outcome);
-                outcome.sums.add_to(tally);
+        match self.tally.take() {
+            Some(tally) => {
+                let mut sums = Sums::<M>::default();
+                self.work_out::<M>(&mut sums);
+                sums.add_to(tally);
             }
             None => {
-                let mut answers = core::mem::take(&mut self.pairs.answers);
-                answers.clear(self.pairs.touching.len());
-                self.work_out::<M>(of_grains, &mut answers);
-                self.pairs.answers = answers;
+                let mut terms = core::mem::take(&mut self.pairs.terms);
+                terms.clear(own.number, self.pairs.touching.len(), self.complete);
+                let complete = self.complete;
+                let mut rows = OfRows {
+                    own,
+                    terms: &mut terms,
+                    complete,
+                };
+                self.work_out::<M>(&mut rows);
+                self.pairs.terms = terms;
             }
         }
-        if T::ROTATES && of_grains {
-            self.pairs.end_histories(&self.law.tangential);
+        if T::ROTATES && self.of_grains {
+            self.pairs.end_histories(&self.law.tangential, own);
         }
     }
 }
 
 impl<N: NormalLaw, T: PackedHistory> PairForces<'_, N, T> {
     #[inline(always)]
-    fn work_out<M: Machine>(&mut self, of_grains: bool, outcome: &mut impl Outcome<M>) {
+    fn work_out<M: Machine>(&mut self, outcome: &mut impl Outcome<M>) {
         let step = (self.length, self.time_step);
-        if of_grains {
-            work_out(self.law, self.pairs, self.spheres, step, outcome);
+        let (pairs, forces) = (&mut *self.pairs, &mut *self.forces);
+        if self.of_grains {
+            work_out(self.law, pairs, self.spheres, forces, step, outcome);
         } else {
             // Wall against wall, across a closing throat: the same normal law, no friction.
-            work_out(
-                &self.law.frictionless(),
-                self.pairs,
-                self.spheres,
-                step,
-                outcome,
-            );
+            let law = &self.law.frictionless();
+            work_out(law, pairs, self.spheres, forces, step, outcome);
         }
     }
 }
 
-/// Works out the contacts of the pairs that touch.
+/// Works out the contacts of the pairs that touch, and adds up forces and torques.
 #[inline(always)]
 fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
     law: &ContactLaw<N, T>,
     pairs: &mut Pairs,
     spheres: Moving<'_>,
+    forces: &mut Forces,
     (length, time_step): (f64, f64),
     outcome: &mut impl Outcome<M>,
 ) {
     let Moving {
-        grains,
         position,
         velocity,
         turning,
     } = spheres;
+    let force = &mut forces.force[..];
+    // Of one length: looked at once.
+    let torque = &mut forces.torque[..force.len()];
     let histories = &mut pairs.histories[..];
     let zero = Lanes::<M>::splat(0.0);
     for block in pairs.touching.chunks(LANES) {
         let contacts = block.len();
-        let (mut pair, mut first, mut second) = ([0; LANES], [0; LANES], [0; LANES]);
+        // Lanes to spare do the last contact again, to no effect.
+        let mut near = [block[contacts - 1]; LANES];
+        near[..contacts].copy_from_slice(block);
+        let pair = eight_of(&pairs.number, &near).map(|&pair| pair);
+        let first = eight_of(&pairs.near.first, &near).map(|&place| place);
+        let second = eight_of(&pairs.near.second, &near).map(|&place| place);
         let nothing = Quad::<M>::splat(0.0);
         let (mut apart, mut relative) = ([nothing; LANES], [nothing; LANES]);
         let (mut turnings_i, mut turnings_j) = ([nothing; LANES], [nothing; LANES]);
-        let mut with_wall = 0;
+        let places = [eight_of(position, &first), eight_of(position, &second)];
+        let velocities = [eight_of(velocity, &first), eight_of(velocity, &second)];
+        let turnings = [eight_of(turning, &first), eight_of(turning, &second)];
         for lane in 0..LANES {
-            // Lanes to spare do the last contact again, to no effect.
-            let k = block[lane.min(contacts - 1)] as usize;
-            pair[lane] = pairs.number[k] as usize;
-            first[lane] = pairs.near.first[k] as usize;
-            second[lane] = pairs.near.second[k] as usize;
-            let (i, j) = (first[lane], second[lane]);
-            apart[lane] = position[i].quad() - position[j].quad();
-            relative[lane] = velocity[i].quad() - velocity[j].quad();
-            turnings_i[lane] = turning[i].quad();
-            turnings_j[lane] = turning[j].quad();
-            with_wall |= u8::from(j >= grains) << lane;
+            apart[lane] = places[0][lane].quad() - places[1][lane].quad();
+            relative[lane] = velocities[0][lane].quad() - velocities[1][lane].quad();
+            turnings_i[lane] = turnings[0][lane].quad();
+            turnings_j[lane] = turnings[1][lane].quad();
         }
         let separation = record::periodic(record::into_lanes::<M>(apart).0, length);
         let (relative_velocity, _) = record::into_lanes::<M>(relative);
         let (turning_i, diameter_i) = record::into_lanes::<M>(turnings_i);
         let (turning_j, diameter_j) = record::into_lanes::<M>(turnings_j);
+        let with_wall = diameter_j.less(zero);
+        let (diameter_i, diameter_j) = (diameter_i.abs(), diameter_j.abs());
         let mut contact = Contact::new((diameter_i, diameter_j), separation, relative_velocity);
         let arms = (contact.arm(diameter_i), contact.arm(diameter_j));
         if T::ROTATES {
             contact.rotation = turning_i * arms.0 + turning_j * arms.1;
         }
-        let mut history = T::into_lanes::<M>(histories, pair);
+        let mut history = T::into_lanes::<M>(histories, &pair);
         let answer = law.force(&contact, &mut history, time_step);
-        let with_wall = Mask::from_bits(with_wall);
-        outcome.add(terms(&answer, contact.overlap, with_wall, contacts));
-        let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());
-        let eight = Eight {
-            contacts,
-            first,
-            second,
-            forces: record::from_lanes(answer.force, zero),
-            torques_per_arm: record::from_lanes(answer.torque_per_arm, zero),
-            arms: [arms_i, arms_j],
-        };
-        match T::ROTATES {
-            true => outcome.take::<true>(eight),
-            false => outcome.take::<false>(eight),
-        }
         T::from_lanes::<M>(&history, histories, &pair[..contacts]);
-    }
-}
-
-/// What is added up of the answers for so many contacts, one in each of the first lanes.
-#[inline(always)]
-fn terms<M: Machine>(
-    answer: &ContactForce<Lanes<M>>,
-    overlap: Lanes<M>,
-    with_wall: Mask<M>,
-    contacts: usize,
-) -> ContactTerms<M> {
-    let (zero, valid) = (Lanes::splat(0.0), Mask::first(contacts));
-    let with_wall = valid & with_wall;
-    let number = with_wall.count();
-    ContactTerms {
-        in_lanes: [
-            Lanes::select(valid, answer.energy, zero),
-            Lanes::select(valid, answer.normal_dissipation, zero),
-            Lanes::select(valid, answer.tangential.damped, zero),
-            Lanes::select(valid, answer.tangential.slid, zero),
-            Lanes::select(valid, overlap, zero),
-            Lanes::select(with_wall, answer.force.z, zero),
-        ],
-        numbers: [
-            contacts as u64 - number,
-            number,
-            (valid & answer.tangential.sliding).count(),
-        ],
-    }
-}
-
-/// Forces and torques are added at once.
-struct AtOnce<'a, M: Machine> {
-    forces: ForcesMut<'a>,
-    sums: Sums<M>,
-}
-
-impl<M: Machine> Outcome<M> for AtOnce<'_, M> {
-    #[inline(always)]
-    fn take<const ROTATES: bool>(&mut self, eight: Eight<M>) {
-        let ForcesMut { force, torque, .. } = &mut self.forces;
-        for lane in 0..eight.contacts {
-            let (i, j) = (eight.first[lane], eight.second[lane]);
-            let on_first = eight.forces[lane];
+        let on_first = record::from_lanes(answer.force, zero);
+        let per_arm = record::from_lanes(answer.torque_per_arm, zero);
+        let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());
+        let rows = first.map(|place| outcome.at(place as usize));
+        for lane in 0..contacts {
+            let (i, j) = (rows[lane], outcome.at(second[lane] as usize));
+            let (on_first, per_arm) = (on_first[lane], per_arm[lane]);
             force[i] = (force[i].quad() + on_first).record();
             force[j] = (force[j].quad() - on_first).record();
-            if ROTATES {
-                let per_arm = eight.torques_per_arm[lane];
-                torque[i] = (torque[i].quad() + per_arm * eight.arms[0][lane]).record();
-                torque[j] = (torque[j].quad() + per_arm * eight.arms[1][lane]).record();
+            if T::ROTATES {
+                torque[i] = (torque[i].quad() + per_arm * arms_i[lane]).record();
+                torque[j] = (torque[j].quad() + per_arm * arms_j[lane]).record();
             }
         }
+        outcome.add(&Eight {
+            contacts,
+            rows,
+            answer,
+            overlap: contact.overlap,
+            with_wall,
+        });
+    }
+}
+
+/// All spheres are in one section: sums are added up at once.
+impl<M: Machine> Outcome<M> for Sums<M> {
+    #[inline(always)]
+    fn at(&self, place: usize) -> usize {
+        place
     }
 
     #[inline(always)]
-    fn add(&mut self, terms: ContactTerms<M>) {
-        self.sums.contacts(terms);
+    fn add(&mut self, eight: &Eight<M>) {
+        let (zero, valid) = (Lanes::splat(0.0), Mask::first(eight.contacts));
+        let with_wall = valid & eight.with_wall;
+        let answer = &eight.answer;
+        let overlap = Lanes::select(valid, eight.overlap, zero);
+        self.contact_energy += Lanes::select(valid, answer.energy, zero);
+        self.normal_dissipation += Lanes::select(valid, answer.normal_dissipation, zero);
+        self.tangential_lost += Lanes::select(valid, answer.tangential.damped, zero);
+        self.sliding_lost += Lanes::select(valid, answer.tangential.slid, zero);
+        self.total_overlap += overlap;
+        self.largest_overlap = self.largest_overlap.max(overlap);
+        self.wall_axial_force += Lanes::select(with_wall, answer.force.z, zero);
+        self.grain_contacts += eight.contacts as u64 - with_wall.count();
+        self.wall_contacts += with_wall.count();
+        self.sliding_contacts += (valid & answer.tangential.sliding).count();
+    }
+}
+
+/// The terms of the contacts in a section's rows of the list are kept.
+struct OfRows<'a> {
+    own: Own,
+    terms: &'a mut RowTerms,
+    complete: bool,
+}
+
+impl<M: Machine> Outcome<M> for OfRows<'_> {
+    #[inline(always)]
+    fn at(&self, place: usize) -> usize {
+        self.own.at(place)
+    }
+
+    #[inline(always)]
+    fn add(&mut self, eight: &Eight<M>) {
+        let Self {
+            own,
+            terms,
+            complete,
+        } = self;
+        let answer = &eight.answer;
+        let zero = Lanes::splat(0.0);
+        let lost = LaneVector::new(
+            answer.normal_dissipation,
+            answer.tangential.damped,
+            answer.tangential.slid,
+        );
+        let losses = record::from_lanes(lost, answer.energy);
+        let mut rest = losses;
+        if *complete {
+            let axial_force = Lanes::select(eight.with_wall, answer.force.z, zero);
+            let vector = LaneVector::new(eight.overlap, axial_force, zero);
+            rest = record::from_lanes(vector, zero);
+        }
+        let mut owned = 0;
+        for lane in 0..eight.contacts {
+            let row = eight.rows[lane];
+            terms.losses[terms.contacts] = losses[lane].record();
+            if *complete {
+                terms.rest[terms.contacts] = rest[lane].record();
+            }
+            // Of a contact in a row of another section nothing is kept.
+            terms.rows[row] += 1;
+            let is_own = row < own.number;
+            terms.contacts += usize::from(is_own);
+            owned |= u8::from(is_own) << lane;
+        }
+        let owned = Mask::from_bits(owned);
+        let overlap = Lanes::select(owned, eight.overlap, zero);
+        terms.largest_overlap = terms.largest_overlap.max(overlap.max_lane());
+        let with_wall = (owned & eight.with_wall).count();
+        let [of_grains, of_wall, sliding] = &mut terms.numbers;
+        *of_grains += owned.count() - with_wall;
+        *of_wall += with_wall;
+        *sliding += (owned & answer.tangential.sliding).count();
     }
 }

@@ -1,188 +1,187 @@
-//! All forces on the spheres: added as they are found by one thread, or shared out to several.
+//! All forces on the spheres: of the only section as they are found, of several shared out to threads.
 
 use peristalsis_physics::contact::NormalLaw;
 
-use super::answers::Gather;
-use super::book::AddUp;
+use super::book::{AddContacts, AddRings};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
-use super::network::{Rings, WallForces, mean_force};
-use super::pairs::Pairs;
-use super::spheres::{ForcesMut, GrainsMut};
-use super::stretch::Stretch;
+use super::network::{WallForces, mean_force};
+use super::section::{BesideWall, Shares};
+use super::spheres::GrainsMut;
 use super::{Listed, Scratch};
-use crate::fast::machine::Instructions;
-use crate::fast::threads::Cut;
 use crate::ledger::Tally;
 use crate::wall::Wall;
 
 impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
     /// Adds all forces, one after the other.
-    pub(super) fn add_forces(&mut self, wall: &Wall, tally: &mut Tally) {
+    pub(super) fn add_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
         let (law, length) = (self.reference.law, self.reference.length);
         let time_step = self.reference.parameters.time_step;
         let Scratch {
             instructions,
             spheres,
-            stretches,
-            pairs,
+            shares,
             ..
         } = &mut *self.scratch;
-        let grains = spheres.grains;
-        for pairs in pairs {
-            let mut of_wall = Tally::default();
-            let of_grains = pairs.rows.start < grains;
-            let (spheres, forces) = spheres.with_forces();
-            let tally_here = if of_grains { &mut *tally } else { &mut of_wall };
+        let (Some(section), Some([of_grains, of_wall])) =
+            (shares.sections.first_mut(), shares.pairs.first_mut())
+        else {
+            return;
+        };
+        let places = &spheres.place[spheres.grains..];
+        let spheres = spheres.moving();
+        let mut sums_of_wall = Tally::default();
+        for (pairs, of_grains, tally) in [
+            (&mut *of_grains, true, &mut *tally),
+            (of_wall, false, &mut sums_of_wall),
+        ] {
             instructions.run(PairForces {
                 law,
                 pairs,
+                of_grains,
                 spheres,
+                forces: &mut section.forces,
                 length,
                 time_step,
-                at_once: Some((forces, tally_here)),
+                tally: Some(tally),
+                complete,
             });
-            add_ended(pairs, tally);
-            add_of_wall(&of_wall, tally);
         }
-        let (spheres, forces) = spheres.with_forces();
+        for (_, energy) in &of_grains.ended {
+            tally.history_reset += energy;
+        }
+        // Contacts of wall spheres with each other are no contacts of grains.
+        tally.contact_energy += sums_of_wall.contact_energy;
+        tally.normal_dissipation += sums_of_wall.normal_dissipation;
         let Some(elastic) = wall.elastic() else {
-            let mut all = GrainsMut {
+            let mut grains = GrainsMut {
                 moving: spheres,
-                forces,
+                first: 0,
+                forces: section.forces.of_grains(),
             };
             let memory = &mut self.reference.contacts.wall;
-            wall.add_forces(law, &mut all, memory, time_step, tally);
+            wall.add_forces(law, &mut grains, memory, time_step, tally);
             return;
         };
-        if let [_, of_wall] = &mut stretches[..] {
-            instructions.run(WallForces {
-                wall: elastic,
-                rings: &mut of_wall.rings,
-                spheres,
-                forces: forces.cut(grains).1,
-                tally: Some(tally),
-            });
-        }
-        self.mean_wall_force = mean_force(elastic, rings(stretches), tally);
+        let [force, _] = section.forces.of_wall();
+        instructions.run(WallForces {
+            wall: elastic,
+            rings: &mut section.rings,
+            spheres,
+            places,
+            first: section.own.of_wall().start,
+            force,
+            tally: Some(tally),
+            complete,
+        });
+        self.mean_wall_force = mean_force(elastic, core::iter::once(&section.rings), tally);
     }
 
-    /// The same by several threads: the contacts of each stretch of the list, then the spheres of each stretch.
-    pub(super) fn share_forces(&mut self, wall: &Wall, tally: &mut Tally) {
+    /// The same by several threads: the contacts of each section, then the forces of its wall.
+    pub(super) fn share_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
         let (law, length) = (self.reference.law, self.reference.length);
         let time_step = self.reference.parameters.time_step;
         let Scratch {
             instructions,
             threads,
             spheres,
-            stretches,
-            stretch_of,
-            pairs,
+            shares,
+            ended,
             ..
         } = &mut *self.scratch;
-        let (instructions, grains, number) = (*instructions, spheres.grains, stretches.len());
-        let (spheres, forces) = spheres.with_forces();
-        threads.each(pairs, (), &|_| 0, &|pairs, ()| {
-            instructions.run(PairForces {
-                law,
-                pairs,
-                spheres,
-                length,
-                time_step,
-                at_once: None,
-            });
-            pairs.answers.sort(stretch_of, number);
-        });
-        let pairs = &pairs[..];
-        let gather = |stretch: usize, forces: &mut ForcesMut<'_>| {
-            instructions.run(Gather {
-                pairs: &pairs[..=stretch],
-                forces: forces.reborrow(),
-                // The spheres of a wall do not turn.
-                rotates: T::ROTATES && pairs[stretch].rows.start < grains,
-            });
-        };
-        let sums = || add_up(instructions, pairs, grains, tally);
-        let Some(elastic) = wall.elastic() else {
-            let beside_wall = &mut self.beside_wall[..];
-            threads.each_beside(
-                sums,
-                beside_wall,
-                forces,
-                &|stretch| stretch.grains,
-                &|stretch, mut forces| {
-                    gather(stretch.stretch, &mut forces);
-                    let mut grains = GrainsMut {
-                        moving: spheres,
-                        forces,
-                    };
-                    let (memory, sums) = (&mut stretch.memory, &mut stretch.sums);
-                    wall.add_forces(law, &mut grains, memory, time_step, sums);
-                },
-            );
-            for stretch in &mut self.beside_wall {
-                stretch.sums.add_to(tally);
-            }
-            return;
-        };
-        threads.each_beside(
-            sums,
-            stretches,
-            forces,
-            &Stretch::length,
-            &|stretch, mut forces| {
-                gather(stretch.number, &mut forces);
-                if !stretch.of_grains {
-                    instructions.run(WallForces {
-                        wall: elastic,
-                        rings: &mut stretch.rings,
-                        spheres,
-                        forces,
-                        tally: None,
-                    });
+        let instructions = *instructions;
+        let grains = spheres.grains;
+        let places = &spheres.place[grains..];
+        let spheres = spheres.moving();
+        let elastic = wall.elastic();
+        let Shares {
+            sections,
+            pairs,
+            section_of,
+            ..
+        } = shares;
+        let section_of = &section_of[..grains];
+        let sections = &mut sections[..];
+        threads.each(
+            pairs,
+            &mut *sections,
+            &|_| 1,
+            &|[of_grains, of_wall], sections| {
+                for section in sections {
+                    for (pairs, of_grains) in [(&mut *of_grains, true), (&mut *of_wall, false)] {
+                        instructions.run(PairForces {
+                            law,
+                            pairs,
+                            of_grains,
+                            spheres,
+                            forces: &mut section.forces,
+                            length,
+                            time_step,
+                            tally: None,
+                            complete,
+                        });
+                    }
                 }
             },
         );
-        instructions.run(AddUp {
-            stretches: rings(stretches).map(|rings| &rings.terms),
+        let sums = || {
+            instructions.run(AddContacts {
+                pairs,
+                section_of,
+                complete,
+                tally,
+            });
+            ended.clear();
+            ended.extend(pairs.iter().flat_map(|[of_grains, _]| &of_grains.ended));
+            ended.sort_unstable_by_key(|(at, _)| *at);
+            for (_, energy) in ended {
+                tally.history_reset += *energy;
+            }
+        };
+        let Some(elastic) = elastic else {
+            let beside_wall = &mut self.beside_wall[..];
+            threads.each_beside(
+                sums,
+                sections,
+                &mut *beside_wall,
+                &|_| 1,
+                &|section, beside_wall| {
+                    let mut grains = GrainsMut {
+                        moving: spheres,
+                        first: section.own.start,
+                        forces: section.forces.of_grains(),
+                    };
+                    for BesideWall { memory, sums } in beside_wall {
+                        wall.add_forces(law, &mut grains, memory, time_step, sums);
+                    }
+                },
+            );
+            for &section in section_of {
+                beside_wall[section as usize].sums.add_row(tally);
+            }
+            for BesideWall { sums, .. } in beside_wall {
+                sums.clear();
+            }
+            return;
+        };
+        threads.each_beside(sums, sections, (), &|_| 0, &|section, ()| {
+            let [force, _] = section.forces.of_wall();
+            instructions.run(WallForces {
+                wall: elastic,
+                rings: &mut section.rings,
+                spheres,
+                places,
+                first: section.own.of_wall().start,
+                force,
+                tally: None,
+                complete,
+            });
+        });
+        let rings = || sections.iter().map(|section| &section.rings);
+        instructions.run(AddRings {
+            sections: rings().map(|rings| &rings.terms),
             tally,
         });
-        self.mean_wall_force = mean_force(elastic, rings(stretches), tally);
+        self.mean_wall_force = mean_force(elastic, rings(), tally);
     }
-}
-
-fn rings(stretches: &[Stretch]) -> impl Iterator<Item = &Rings> {
-    let of_wall = stretches.iter().filter(|stretch| !stretch.of_grains);
-    of_wall.map(|stretch| &stretch.rings)
-}
-
-/// Adds up what the answers for all pairs have to add to the sums.
-fn add_up(instructions: Instructions, pairs: &[Pairs], grains: usize, tally: &mut Tally) {
-    let (of_grains, of_wall) =
-        pairs.split_at(pairs.partition_point(|pairs| pairs.rows.start < grains));
-    let add_up = |pairs: &[Pairs], tally: &mut Tally| {
-        instructions.run(AddUp {
-            stretches: pairs.iter().map(|pairs| &pairs.answers.terms),
-            tally,
-        });
-    };
-    add_up(of_grains, tally);
-    for pairs in of_grains {
-        add_ended(pairs, tally);
-    }
-    let mut sums = Tally::default();
-    add_up(of_wall, &mut sums);
-    add_of_wall(&sums, tally);
-}
-
-fn add_ended(pairs: &Pairs, tally: &mut Tally) {
-    for energy in &pairs.ended {
-        tally.history_reset += energy;
-    }
-}
-
-/// Adds the contacts of wall spheres with each other, which are no contacts of grains.
-fn add_of_wall(of_wall: &Tally, tally: &mut Tally) {
-    tally.contact_energy += of_wall.contact_energy;
-    tally.normal_dissipation += of_wall.normal_dissipation;
 }

@@ -5,7 +5,7 @@ use peristalsis_physics::real::Real;
 
 use super::record::{self, Record};
 use crate::fast::lanes::{LANES, Lanes, Quad};
-use crate::fast::machine::Machine;
+use crate::fast::machine::{Machine, eight_of};
 
 /// A history in eight numbers.
 pub(crate) type Packed = [Record; 2];
@@ -17,14 +17,10 @@ pub(crate) trait PackedHistory: TangentialLaw {
     fn unpack(packed: &[Record; 2]) -> Self::History<f64>;
 
     /// Histories of a list, side by side.
-    fn into_lanes<M: Machine>(packed: &[Packed], at: [usize; LANES]) -> Self::History<Lanes<M>>;
+    fn into_lanes<M: Machine>(packed: &[Packed], at: &[u32; LANES]) -> Self::History<Lanes<M>>;
 
     /// Packs the histories of the first so many lanes into the list.
-    fn from_lanes<M: Machine>(
-        history: &Self::History<Lanes<M>>,
-        packed: &mut [Packed],
-        at: &[usize],
-    );
+    fn from_lanes<M: Machine>(history: &Self::History<Lanes<M>>, packed: &mut [Packed], at: &[u32]);
 }
 
 impl PackedHistory for Frictionless {
@@ -35,10 +31,10 @@ impl PackedHistory for Frictionless {
     fn unpack(_: &Packed) {}
 
     #[inline(always)]
-    fn into_lanes<M: Machine>(_: &[Packed], _: [usize; LANES]) {}
+    fn into_lanes<M: Machine>(_: &[Packed], _: &[u32; LANES]) {}
 
     #[inline(always)]
-    fn from_lanes<M: Machine>((): &(), _: &mut [Packed], _: &[usize]) {}
+    fn from_lanes<M: Machine>((): &(), _: &mut [Packed], _: &[u32]) {}
 }
 
 impl PackedHistory for CundallStrack {
@@ -59,14 +55,12 @@ impl PackedHistory for CundallStrack {
     }
 
     #[inline(always)]
-    fn into_lanes<M: Machine>(
-        packed: &[Packed],
-        at: [usize; LANES],
-    ) -> TangentialHistory<Lanes<M>> {
+    fn into_lanes<M: Machine>(packed: &[Packed], at: &[u32; LANES]) -> TangentialHistory<Lanes<M>> {
         let mut first = [Quad::<M>::splat(0.0); LANES];
         let mut second = first;
+        let packed = eight_of(packed, at);
         for lane in 0..LANES {
-            let [one, other] = &packed[at[lane]];
+            let [one, other] = packed[lane];
             first[lane] = one.quad();
             second[lane] = other.quad();
         }
@@ -84,13 +78,13 @@ impl PackedHistory for CundallStrack {
     fn from_lanes<M: Machine>(
         history: &TangentialHistory<Lanes<M>>,
         packed: &mut [Packed],
-        at: &[usize],
+        at: &[u32],
     ) {
         let sliding = Lanes::select(history.sliding, Lanes::splat(1.0), Lanes::splat(0.0));
         let first = record::from_lanes(history.displacement, history.power);
         let second = record::from_lanes(history.rate, sliding);
         for (lane, &at) in at.iter().enumerate() {
-            packed[at] = [first[lane].record(), second[lane].record()];
+            packed[at as usize] = [first[lane].record(), second[lane].record()];
         }
     }
 }

@@ -3,11 +3,9 @@
 //! For as long as an advance lasts the spheres live in records ([`spheres`]); a step is one pass over the listed pairs
 //! ([`pairs`], [`contacts`]), one over the wall ([`network`]) and one over the spheres ([`motion`]).
 //!
-//! One thread adds forces as it finds them. Several work out the contacts of a stretch of the list each and keep the
-//! answers ([`answers`]); then they add up the forces on a stretch of the spheres each. Every sphere adds in the order of
-//! the list, and every sum has the order that one thread gives it ([`book`]): the bits are the same.
+//! Several threads share out sections of the tube ([`section`]), each with every contact of its spheres. Every sphere adds
+//! in the order of the list, and every sum has the order that one section gives it ([`book`]): the bits are the same.
 
-mod answers;
 mod book;
 mod contacts;
 mod forces;
@@ -16,20 +14,21 @@ mod motion;
 mod network;
 mod pairs;
 mod record;
+mod section;
 mod spheres;
-mod stretch;
 
 use peristalsis_physics::contact::NormalLaw;
 
 use self::history::PackedHistory;
 use self::motion::{Motion, Moved, Stage, Travel};
-use self::pairs::{Pairs, Prune};
+use self::pairs::Prune;
 use self::record::Record;
+use self::section::{BesideWall, Section, Shares};
 use self::spheres::Spheres;
-use self::stretch::{BesideWall, Stretch, share_out};
+use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::fast::machine::Instructions;
-use crate::fast::threads::Threads;
+use crate::fast::threads::{Cut, Threads};
 use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
 use crate::ledger::Tally;
@@ -45,13 +44,15 @@ pub(crate) struct Scratch {
     pub(crate) instructions: Instructions,
     pub(crate) threads: Threads,
     spheres: Spheres,
-    stretches: Vec<Stretch>,
-    /// Which stretch each sphere is in.
-    stretch_of: Vec<u16>,
-    /// The listed pairs of each stretch.
-    pairs: Vec<Pairs>,
+    shares: Shares,
     /// Places in the list of all that remember a contact.
     held: Vec<u32>,
+    /// The section that hands each of them over, and which of its own it is.
+    holders: Vec<(usize, usize)>,
+    /// Room: of each section the next.
+    next: Vec<usize>,
+    /// Room: contacts of all sections that have ended.
+    ended: Vec<(u32, f64)>,
 }
 
 /// The list is made for so many skins.
@@ -73,12 +74,16 @@ pub(crate) fn advance<N: NormalLaw, T: PackedHistory>(
     threads.install(|| {
         let mut listed = Listed::begin(reference, scratch, &course.wall);
         let outcome = course.advance(&mut listed, steps);
-        let Reference { contacts, .. } = &mut listed.reference;
+        let Reference {
+            bodies,
+            past,
+            contacts,
+            ..
+        } = &mut listed.reference;
         listed
             .scratch
             .store_histories::<T>(contacts, &listed.beside_wall);
-        let Reference { bodies, past, .. } = listed.reference;
-        listed.scratch.spheres.store(bodies, past);
+        listed.scratch.store_spheres(bodies, past);
         outcome
     })
 }
@@ -93,35 +98,144 @@ struct Listed<'a, N, T: PackedHistory> {
     mean_wall_force: Record,
     /// Since pairs were last chosen from the list.
     travelled: Travel,
-    /// The stretches of grains, where several threads serve a prescribed wall.
+    /// The sections' contacts with a prescribed wall, where several threads serve it.
     beside_wall: Vec<BesideWall<T::History<f64>>>,
 }
 
 impl Scratch {
-    /// Makes the flat lists from the rows, without histories.
-    fn load_pairs<N, T: PackedHistory>(&mut self, reference: &Reference<'_, N, T>) {
-        let (list, bodies) = (&reference.contacts.pairs, &*reference.bodies);
-        self.threads
-            .each(&mut self.pairs, (), &|_| 0, &|pairs, ()| {
-                pairs.load::<T>(list, bodies);
-            });
+    /// Shares the spheres out to sections, and takes them up.
+    fn share_out<N, T: PackedHistory>(&mut self, reference: &Reference<'_, N, T>, wall: &Wall) {
+        let Self {
+            threads,
+            spheres,
+            shares,
+            ..
+        } = self;
+        let (bodies, list) = (&*reference.bodies, &reference.contacts.pairs);
+        shares.share_out(bodies, list, wall, threads, &mut spheres.number);
+        spheres.load(bodies, reference.past);
+        for section in &mut shares.sections {
+            section.forces.load(section.own, bodies, &spheres.number);
+        }
     }
 
-    /// How far the spheres have gone since a list of them was made.
+    fn store_spheres(&self, bodies: &mut Bodies, past: &mut Past) {
+        self.spheres.store(bodies, past);
+        for section in &self.shares.sections {
+            section.forces.store(bodies, &self.spheres.number);
+        }
+    }
+
+    /// The sections' contacts with a prescribed wall, where there are several threads.
+    fn beside_wall<N, T: PackedHistory>(
+        &self,
+        reference: &Reference<'_, N, T>,
+        wall: &Wall,
+    ) -> Vec<BesideWall<T::History<f64>>> {
+        if !self.threads.several() || wall.elastic().is_some() {
+            return Vec::new();
+        }
+        let memory = &reference.contacts.wall;
+        let beside = |section: &Section| {
+            let numbers = self.spheres.number[section.own.of_grains()].iter();
+            BesideWall {
+                memory: memory.part(numbers.map(|&number| number as usize)),
+                sums: Waiting::default(),
+            }
+        };
+        self.shares.sections.iter().map(beside).collect()
+    }
+
+    /// Makes the lists of the sections from that of all, without histories.
+    fn load_pairs<N, T: PackedHistory>(&mut self, reference: &Reference<'_, N, T>) {
+        let list = &reference.contacts.pairs;
+        let Self {
+            threads,
+            spheres,
+            shares,
+            ..
+        } = self;
+        let Shares {
+            sections,
+            pairs,
+            offers,
+            section_of,
+            ..
+        } = shares;
+        let (spheres, sections, section_of) = (&*spheres, &sections[..], &section_of[..]);
+        if sections.len() > 1 {
+            threads.each(offers, sections, &|_| 1, &|offer, sections| {
+                for section in sections {
+                    offer.find_borders(section, list, spheres, section_of);
+                }
+            });
+        }
+        let offers = &offers[..];
+        threads.each(pairs, sections, &|_| 1, &|pairs, sections| {
+            for section in sections {
+                section.load_pairs(pairs, list, spheres, offers, T::ROTATES);
+            }
+        });
+        self.shares.count_borders();
+    }
+
+    /// How far the spheres have gone since the list of all was made.
     fn drift<H: Copy + Default + PartialEq + Sync>(
         &mut self,
         list: &Neighbours<H>,
         length: f64,
     ) -> Drift {
-        let position = &self.spheres.position[..];
-        let stretches = &mut self.stretches[..];
-        self.threads.each(stretches, (), &|_| 0, &|stretch, ()| {
-            let places = position[stretch.spheres.clone()].iter();
+        let Spheres {
+            position, number, ..
+        } = &self.spheres;
+        let sections = &mut self.shares.sections[..];
+        self.threads.each(sections, (), &|_| 0, &|section, ()| {
+            let places = position[section.own.all()].iter();
             let unfolded = places.map(|place| place.unfolded(length));
-            stretch.drift = list.drift(stretch.spheres.start, unfolded);
+            let numbers = number[section.own.all()].iter();
+            let here = unfolded.zip(numbers.map(|&number| number as usize));
+            section.drift = list.drift(here);
         });
-        let drifts = self.stretches.iter().map(|stretch| stretch.drift);
+        let drifts = self.shares.sections.iter().map(|section| section.drift);
         drifts.fold(Drift::NONE, Drift::and)
+    }
+
+    /// Takes all histories out of the sections' lists, and writes down where in the list of all they stand, and whose each
+    /// is.
+    fn hand_over(&mut self) {
+        let Self {
+            shares,
+            held,
+            holders,
+            next,
+            ..
+        } = self;
+        let Shares {
+            sections,
+            pairs,
+            offers,
+            ..
+        } = shares;
+        for (section, (pairs, offer)) in sections.iter().zip(pairs.iter_mut().zip(&mut *offers)) {
+            let [of_grains, _] = pairs;
+            of_grains.hand_over(section.own, &mut offer.carried);
+        }
+        held.clear();
+        holders.clear();
+        next.clear();
+        next.resize(offers.len(), 0);
+        // Each section has its own in order.
+        while let Some((section, place)) = (0..offers.len())
+            .filter_map(|section| {
+                let places = &offers[section].carried.places;
+                Some((section, *places.get(next[section])?))
+            })
+            .min_by_key(|&(_, place)| place)
+        {
+            held.push(place);
+            holders.push((section, next[section]));
+            next[section] += 1;
+        }
     }
 
     /// Writes the histories back to where they came from.
@@ -130,51 +244,50 @@ impl Scratch {
         contacts: &mut Contacts<T::History<f64>>,
         beside_wall: &[BesideWall<T::History<f64>>],
     ) {
-        for pairs in &self.pairs {
-            pairs.store::<T>(contacts.pairs.histories_mut());
+        let Shares {
+            sections, pairs, ..
+        } = &self.shares;
+        for (section, [of_grains, _]) in sections.iter().zip(pairs) {
+            of_grains.store::<T>(section.own, contacts.pairs.histories_mut());
         }
-        if !beside_wall.is_empty() {
-            contacts.wall = WallMemory::default();
-            for stretch in beside_wall {
-                contacts.wall.append(&stretch.memory);
-            }
+        self.store_wall_memory::<T>(contacts, beside_wall);
+    }
+
+    fn store_wall_memory<T: PackedHistory>(
+        &self,
+        contacts: &mut Contacts<T::History<f64>>,
+        beside_wall: &[BesideWall<T::History<f64>>],
+    ) {
+        if beside_wall.is_empty() {
+            return;
+        }
+        let Shares {
+            sections,
+            section_of,
+            ..
+        } = &self.shares;
+        contacts.wall = WallMemory::default();
+        let grains = self.spheres.place[..self.spheres.grains].iter();
+        for (&place, &section) in grains.zip(section_of) {
+            let section = section as usize;
+            let within = place as usize - sections[section].own.start;
+            let memory = &beside_wall[section].memory;
+            contacts.wall.append(memory, within);
         }
     }
 }
 
 impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
     fn begin(reference: Reference<'a, N, T>, scratch: &'a mut Scratch, wall: &Wall) -> Self {
-        let list = &reference.contacts.pairs;
-        let Scratch {
-            threads,
-            spheres,
-            stretches,
-            stretch_of,
-            pairs,
-            ..
-        } = &mut *scratch;
-        spheres.load(reference.bodies, reference.past);
-        share_out(stretches, spheres, list, wall, threads);
-        pairs.resize_with(stretches.len(), Pairs::default);
-        stretch_of.clear();
-        for (number, (stretch, pairs)) in (0..).zip(stretches.iter().zip(pairs)) {
-            stretch_of.resize(stretch.spheres.end, number);
-            pairs.rows = stretch.spheres.clone();
-        }
-        let mut beside_wall = Vec::new();
-        if threads.several() && wall.elastic().is_none() {
-            let memory = &reference.contacts.wall;
-            let stretches = stretches.iter().enumerate();
-            beside_wall.extend(stretches.map(|(number, stretch)| BesideWall {
-                stretch: number,
-                grains: stretch.length(),
-                memory: memory.part(stretch.spheres.clone()),
-                sums: Waiting::default(),
-            }));
-        }
+        scratch.share_out(&reference, wall);
+        let beside_wall = scratch.beside_wall(&reference, wall);
         scratch.load_pairs(&reference);
-        for pairs in &mut scratch.pairs {
-            pairs.take_up::<T>(reference.contacts.pairs.histories_mut());
+        let list = &mut reference.contacts.pairs;
+        for [of_grains, _] in &mut scratch.shares.pairs {
+            of_grains.take_up::<T>(list.histories());
+        }
+        for [of_grains, _] in &scratch.shares.pairs {
+            of_grains.freshen(list.histories_mut());
         }
         Self {
             reference,
@@ -195,76 +308,113 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             instructions,
             threads,
             spheres,
-            stretches,
+            shares,
             ..
         } = &mut *self.scratch;
         let parameters = self.reference.parameters;
         let (stage, mean_wall_force) = (self.stage, self.mean_wall_force);
         let (limit, length) = (self.reference.limit, self.reference.length);
         let integrator = spheres.prepare_to_move(parameters.integrator, stage);
+        let number = core::mem::take(&mut spheres.number);
         threads.each(
-            stretches,
+            &mut shares.sections,
             spheres.all_mut(),
-            &Stretch::length,
-            &|stretch, spheres| {
-                stretch.moved = instructions.run(Motion {
-                    spheres,
-                    of_grains: stretch.of_grains,
-                    integrator,
-                    stage,
-                    mean_wall_force,
-                    rotates: T::ROTATES,
-                    body_force: parameters.body_force,
-                    time_step: parameters.time_step,
-                    limit,
-                    length,
-                });
+            &Section::length,
+            &|section, spheres| {
+                let mut moved = Moved::default();
+                let (of_grains, of_wall) = spheres.cut(section.own.grains);
+                for (spheres, are_grains) in [(of_grains, true), (of_wall, false)] {
+                    let forces = match are_grains {
+                        true => section.forces.of_grains(),
+                        false => section.forces.of_wall(),
+                    };
+                    moved = moved.and(instructions.run(Motion {
+                        spheres,
+                        forces,
+                        of_grains: are_grains,
+                        integrator,
+                        stage,
+                        mean_wall_force,
+                        rotates: T::ROTATES,
+                        body_force: parameters.body_force,
+                        time_step: parameters.time_step,
+                        limit,
+                        length,
+                    }));
+                }
+                if let Some(runaway) = &mut moved.runaway {
+                    runaway.body = number[runaway.body] as usize;
+                }
+                section.moved = moved;
             },
         );
-        Moved::travel(stretches.iter().map(|stretch| stretch.moved))
+        spheres.number = number;
+        let moved = shares.sections.iter().map(|section| section.moved);
+        moved.fold(Moved::default(), Moved::and).travel()
     }
 
     /// Chooses the pairs that may touch in the steps to come; makes the list anew where it does not hold them all.
     fn choose_pairs(&mut self, wall: &Wall) {
         let (skin, length) = (self.reference.parameters.skin, self.reference.length);
-        let Reference {
-            contacts, bodies, ..
-        } = &mut self.reference;
-        let drift = self.scratch.drift(&contacts.pairs, length);
-        if !contacts.pairs.covers(bodies.number(), drift, CHOSEN * skin) {
-            self.scratch.spheres.store_places(bodies);
-            let Scratch {
-                threads,
-                pairs,
-                held,
-                ..
-            } = &mut *self.scratch;
-            held.clear();
-            pairs.iter_mut().for_each(|pairs| pairs.hand_over(held));
-            contacts.rebuild(bodies, wall, LISTED * skin, Some(held), threads);
-            self.scratch.load_pairs(&self.reference);
-            let places = self.reference.contacts.pairs.moved();
-            for pairs in &mut self.scratch.pairs {
-                pairs.carry_on(places);
-            }
+        let drift = self.scratch.drift(&self.reference.contacts.pairs, length);
+        let number = self.reference.bodies.number();
+        let list = &self.reference.contacts.pairs;
+        if !list.covers(number, drift, CHOSEN * skin) {
+            self.list_anew(wall);
         }
         let Scratch {
             instructions,
             threads,
             spheres,
-            pairs,
+            shares,
             ..
         } = &mut *self.scratch;
         let position = &spheres.position[..];
-        threads.each(pairs, (), &|_| 0, &|pairs, ()| {
-            instructions.run(Prune {
-                pairs,
-                position,
-                length,
-                skin: CHOSEN * skin,
-            });
+        threads.each(&mut shares.pairs, (), &|_| 0, &|of_section, ()| {
+            for pairs in of_section {
+                instructions.run(Prune {
+                    pairs,
+                    position,
+                    length,
+                    skin: CHOSEN * skin,
+                });
+            }
         });
         self.travelled = Travel::default();
+    }
+
+    fn list_anew(&mut self, wall: &Wall) {
+        let Self {
+            reference, scratch, ..
+        } = self;
+        scratch.hand_over();
+        if scratch.shares.are_worn() {
+            scratch.store_spheres(reference.bodies, reference.past);
+            scratch.store_wall_memory::<T>(reference.contacts, &self.beside_wall);
+            scratch.share_out(reference, wall);
+            self.beside_wall = scratch.beside_wall(reference, wall);
+        } else {
+            scratch.spheres.store_places(reference.bodies);
+        }
+        let skin = LISTED * reference.parameters.skin;
+        let held = Some(&scratch.held[..]);
+        let (contacts, bodies) = (&mut *reference.contacts, &*reference.bodies);
+        contacts.rebuild(bodies, wall, skin, held, &scratch.threads);
+        scratch.load_pairs(reference);
+        let places = self.reference.contacts.pairs.moved();
+        let Scratch {
+            threads,
+            shares,
+            holders,
+            ..
+        } = &mut *self.scratch;
+        let (offers, holders) = (&shares.offers[..], &holders[..]);
+        threads.each(&mut shares.pairs, (), &|_| 0, &|[of_grains, _], ()| {
+            of_grains.carry_on(places, |history| {
+                let (section, which) = holders[history];
+                &offers[section].carried.histories[which]
+            });
+        });
     }
 }
 
@@ -280,8 +430,8 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         let reference = &self.reference;
         let (mut bodies, mut contacts) = (reference.bodies.clone(), reference.contacts.clone());
         // With their velocities: contacts that slide store less.
-        let spheres = &self.scratch.spheres;
-        spheres.store(&mut bodies, &mut Past::default());
+        self.scratch
+            .store_spheres(&mut bodies, &mut Past::default());
         self.scratch
             .store_histories::<T>(&mut contacts, &self.beside_wall);
         let parameters = reference.parameters;
@@ -290,7 +440,7 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         evaluate(reference.law, &mut bodies, wall, &mut contacts, time_step)
     }
 
-    fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {
+    fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally {
         if self
             .travelled
             .exceeds(CHOSEN * self.reference.parameters.skin)
@@ -299,8 +449,8 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         }
         let mut tally = Tally::default();
         match self.scratch.threads.several() {
-            false => self.add_forces(wall, &mut tally),
-            true => self.share_forces(wall, &mut tally),
+            false => self.add_forces(wall, complete, &mut tally),
+            true => self.share_forces(wall, complete, &mut tally),
         }
         tally
     }

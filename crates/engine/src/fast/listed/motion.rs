@@ -44,14 +44,14 @@ impl Travel {
     }
 }
 
-/// What a pass did to a stretch of spheres.
+/// What a pass did to the spheres of a section.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moved {
     /// Least and largest displacement along each axis.
     least: Record,
     largest: Record,
     /// The first that moved too far, and stayed where it was.
-    runaway: Option<Runaway>,
+    pub(super) runaway: Option<Runaway>,
 }
 
 impl Default for Moved {
@@ -65,21 +65,23 @@ impl Default for Moved {
 }
 
 impl Moved {
-    /// The same of all stretches, in their order.
-    pub(super) fn travel(stretches: impl Iterator<Item = Self>) -> Result<Travel, Runaway> {
-        let mut all = Self::default();
-        for moved in stretches {
-            for axis in 0..3 {
-                all.least.0[axis] = all.least.0[axis].min(moved.least.0[axis]);
-                all.largest.0[axis] = all.largest.0[axis].max(moved.largest.0[axis]);
-            }
-            all.runaway = all.runaway.or(moved.runaway);
+    /// Of these spheres and of others.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        for axis in 0..3 {
+            self.least.0[axis] = self.least.0[axis].min(other.least.0[axis]);
+            self.largest.0[axis] = self.largest.0[axis].max(other.largest.0[axis]);
         }
-        if let Some(runaway) = all.runaway {
+        let runaways = [self.runaway, other.runaway].into_iter().flatten();
+        self.runaway = runaways.min_by_key(|runaway| runaway.body);
+        self
+    }
+
+    pub(super) fn travel(self) -> Result<Travel, Runaway> {
+        if let Some(runaway) = self.runaway {
             return Err(runaway);
         }
-        let [least_x, least_y, least_z, _] = all.least.0;
-        let [largest_x, largest_y, largest_z, _] = all.largest.0;
+        let [least_x, least_y, least_z, _] = self.least.0;
+        let [largest_x, largest_y, largest_z, _] = self.largest.0;
         if least_z > largest_z {
             return Ok(Travel::default());
         }
@@ -111,9 +113,11 @@ impl Spheres {
     }
 }
 
-/// A pass over a stretch of spheres, all grains or all of the wall.
+/// A pass over some spheres, all grains or all of the wall.
 pub(super) struct Motion<'a> {
     pub(super) spheres: SpheresMut<'a>,
+    /// Forces and torques on them.
+    pub(super) forces: [&'a mut [Record]; 2],
     pub(super) of_grains: bool,
     pub(super) integrator: Integrator,
     pub(super) stage: Stage,
@@ -171,7 +175,7 @@ impl Motion<'_> {
             self.go_on::<M, S, FIRST, MOVES, false>(&scheme, on_wall, &mut extremes);
             if !MOVES {
                 // The spheres of a wall do not rotate, whatever torques contacts wrote there.
-                self.spheres.spin.force.fill(Record::ZERO);
+                self.forces[1].fill(Record::ZERO);
             }
         }
         Moved {
@@ -208,7 +212,7 @@ impl Motion<'_> {
             false => &mut self.spheres.line,
         };
         let velocity = &mut degrees.velocity[..count];
-        let force = &mut degrees.force[..count];
+        let force = &mut self.forces[usize::from(TURNS)][..count];
         let inverse_mass = &degrees.inverse[..count];
         let before = &mut degrees.acceleration_before[..count];
         let velocity_before = match S::TWO_STEP && MOVES {

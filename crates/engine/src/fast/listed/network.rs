@@ -5,9 +5,9 @@
 
 use peristalsis_physics::real::{Real, Vector};
 
-use super::book::{Book, Terms};
+use super::book::{Book, WallTerms};
 use super::record::{self, Record};
-use super::spheres::{ForcesMut, Moving};
+use super::spheres::Moving;
 use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
@@ -97,25 +97,31 @@ impl Rows {
     }
 }
 
-/// Room for a stretch of rings, and what their forces and velocities come to.
+/// Room for the rings of a section, and what their forces and velocities come to.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rings {
     rows: Rows,
     /// Sums of the forces on the spheres of each ring, and of their velocities.
     of_rings: Vec<[Record; 2]>,
-    /// Where there are threads.
-    pub(super) terms: Terms,
+    /// Where there are several sections.
+    pub(super) terms: WallTerms,
 }
 
-/// Adds all forces on the spheres of a stretch of rings except contact forces, which must be there already, and the mean
-/// force that is taken off all.
+/// Adds all forces on the spheres of the rings of a section except contact forces, which must be there already, and the
+/// mean force that is taken off all.
 pub(super) struct WallForces<'a> {
     pub(super) wall: &'a ElasticWall,
     pub(super) rings: &'a mut Rings,
     pub(super) spheres: Moving<'a>,
-    pub(super) forces: ForcesMut<'a>,
+    /// The places of the spheres of the wall.
+    pub(super) places: &'a [u32],
+    /// The first of them that is in the section.
+    pub(super) first: usize,
+    pub(super) force: &'a mut [Record],
     /// Where the sums go at once; without it they become the terms of the rings.
     pub(super) tally: Option<&'a mut Tally>,
+    /// Whether energies are wanted.
+    pub(super) complete: bool,
 }
 
 impl Work for WallForces<'_> {
@@ -145,10 +151,7 @@ impl WallForces<'_> {
         let wall = self.wall;
         let Rings { rows, of_rings, .. } = &mut *self.rings;
         let Moving {
-            grains,
-            position,
-            velocity,
-            ..
+            position, velocity, ..
         } = self.spheres;
         let lattice = wall.lattice();
         let (per_ring, all) = (lattice.spheres_per_ring as usize, lattice.rings() as usize);
@@ -156,9 +159,16 @@ impl WallForces<'_> {
             rows.resize(wall);
         }
         let nothing = Quad::<M>::splat(0.0);
-        let range = |ring: usize| grains + ring * per_ring..grains + (ring + 1) * per_ring;
-        let first = (self.forces.first - grains) / per_ring;
+        // The spheres of a ring are in one section.
+        let range = |ring: usize| {
+            let first = self.places[ring * per_ring] as usize;
+            first..first + per_ring
+        };
         of_rings.clear();
+        let first = (0..all).find(|&ring| range(ring).start == self.first);
+        let Some(first) = first else {
+            return;
+        };
 
         // Forces of the bonds of the ring below on the first.
         let below = range((first + all - 1) % all);
@@ -166,8 +176,14 @@ impl WallForces<'_> {
         rows.velocity.fill_ring::<M>(&velocity[below]);
         rows.place_above.fill_ring::<M>(&position[range(first)]);
         rows.velocity_above.fill_ring::<M>(&velocity[range(first)]);
-        bonds(wall, rows, (first + 1) % 2, &mut Sums::<M>::default());
-        let rings = self.forces.force.chunks_exact_mut(per_ring);
+        bonds(
+            wall,
+            rows,
+            (first + 1) % 2,
+            &mut Sums::<M>::default(),
+            false,
+        );
+        let rings = self.force.chunks_exact_mut(per_ring);
         for (ring, forces) in (first..).zip(rings) {
             core::mem::swap(&mut rows.place, &mut rows.place_above);
             core::mem::swap(&mut rows.velocity, &mut rows.velocity_above);
@@ -179,17 +195,19 @@ impl WallForces<'_> {
                 *turns = place.0[3];
             }
             carry::<M>(rows, ring % 2, per_ring);
-            bonds(wall, rows, ring % 2, book);
-            tethers_and_drive(wall, rows, ring, book);
+            bonds(wall, rows, ring % 2, book, self.complete);
+            tethers_and_drive(wall, rows, ring, book, self.complete);
             let (mut ring_force, mut ring_velocity) = (nothing, nothing);
-            let velocities = &velocity[here];
-            for (k, (force, velocity)) in forces.iter_mut().zip(velocities).enumerate() {
-                let more = &rows.force;
-                let more = Record([more.x[k + 1], more.y[k + 1], more.z[k + 1], 0.0]);
-                let whole = force.quad() + more.quad();
-                *force = whole.record();
-                ring_force = ring_force + whole;
-                ring_velocity = ring_velocity + velocity.quad();
+            let blocks = forces.chunks_mut(LANES).zip(velocity[here].chunks(LANES));
+            for (block, (forces, velocities)) in blocks.enumerate() {
+                let more = rows.force.load::<M>(block * LANES + 1);
+                let more = record::from_lanes(more, Lanes::splat(0.0));
+                for ((force, velocity), more) in forces.iter_mut().zip(velocities).zip(more) {
+                    let whole = force.quad() + more;
+                    *force = whole.record();
+                    ring_force = ring_force + whole;
+                    ring_velocity = ring_velocity + velocity.quad();
+                }
             }
             if wall.parameters().network.tethers.net_force == NetForce::RemovedPerRing {
                 let mean = ring_force * (1.0 / per_ring as f64);
@@ -206,7 +224,7 @@ impl WallForces<'_> {
 /// each.
 pub(super) fn mean_force<'a>(
     wall: &ElasticWall,
-    stretches: impl Iterator<Item = &'a Rings>,
+    sections: impl Iterator<Item = &'a Rings>,
     tally: &mut Tally,
 ) -> Record {
     let lattice = wall.lattice();
@@ -220,7 +238,7 @@ pub(super) fn mean_force<'a>(
     let mut remove = |force: Record, velocity: Record| {
         tally.keep_power -= mean(force).vector().dot(velocity.vector());
     };
-    let rings = stretches.flat_map(|stretch| &stretch.of_rings);
+    let rings = sections.flat_map(|section| &section.of_rings);
     if net_force == NetForce::RemovedPerRing {
         rings.for_each(|[force, velocity]| remove(*force, *velocity));
         return Record::ZERO;
@@ -288,7 +306,13 @@ impl<M: Machine> Bond<M> {
 
 /// Forces of the bonds of a ring of parity `parity`.
 #[inline(always)]
-fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, book: &mut impl Book<M>) {
+fn bonds<M: Machine>(
+    wall: &ElasticWall,
+    rows: &mut Rows,
+    parity: usize,
+    book: &mut impl Book<M>,
+    complete: bool,
+) {
     let parameters = wall.parameters();
     let per_ring = parameters.lattice.spheres_per_ring as usize;
     let network = &parameters.network;
@@ -315,7 +339,9 @@ fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, book: &
         let along = bond.force(here, next, valid, &mut terms[0]);
         let first = bond.force(here, first, valid, &mut terms[1]);
         let second = bond.force(here, second, valid, &mut terms[2]);
-        book.bonds(terms);
+        if complete || damped {
+            book.bonds(terms);
+        }
         rows.along.store(start + 1, along);
         rows.first.store(start + 1, first);
         rows.second.store(start + 1, second);
@@ -330,6 +356,7 @@ fn tethers_and_drive<M: Machine>(
     rows: &mut Rows,
     ring: usize,
     book: &mut impl Book<M>,
+    complete: bool,
 ) {
     let parameters = wall.parameters();
     let lattice = &parameters.lattice;
@@ -366,11 +393,6 @@ fn tethers_and_drive<M: Machine>(
         let away_axial = place.z + turns * Lanes::splat(length) - reference_z;
         let outward = balance - radial * away_radial;
         let across = -(azimuthal * away_across);
-        let keep_energy = half
-            * (radial * away_radial * away_radial
-                + azimuthal * away_across * away_across
-                + axial * away_axial * away_axial)
-            - balance * away_radial;
         let phase = Lanes::splat(parameters.heading) * place.z / Lanes::splat(wavelength)
             - Lanes::splat(wall.cycles);
         let push = Lanes::splat(wall.amplitude) * parameters.waveform.value_by_series(phase);
@@ -387,12 +409,19 @@ fn tethers_and_drive<M: Machine>(
         };
         let (drive_x, drive_y) = (push * drive_cos, push * drive_sin);
         let drive_power = drive_x * velocity.x + drive_y * velocity.y;
-        let dissipation = drag * velocity.squared();
-        book.tethers([
-            Lanes::select(valid, keep_energy, zero),
-            Lanes::select(valid, drive_power, zero),
-            Lanes::select(valid, dissipation, zero),
-        ]);
+        book.drive(Lanes::select(valid, drive_power, zero));
+        if complete || network.drag != 0.0 {
+            let keep_energy = half
+                * (radial * away_radial * away_radial
+                    + azimuthal * away_across * away_across
+                    + axial * away_axial * away_axial)
+                - balance * away_radial;
+            let dissipation = drag * velocity.squared();
+            book.tethers([
+                Lanes::select(valid, keep_energy, zero),
+                Lanes::select(valid, dissipation, zero),
+            ]);
+        }
         let tethers_and_drive = LaneVector::new(
             drive_x + (outward * cos - across * sin),
             drive_y + (outward * sin + across * cos),

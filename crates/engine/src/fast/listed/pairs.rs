@@ -1,18 +1,16 @@
-//! The listed pairs of moving spheres, stretch by stretch, and which of them touch.
+//! The listed pairs of the spheres of a section, and which of them touch.
 //!
-//! One pass over the pairs writes down which of them touch; the law is then evaluated for those only ([`super::contacts`]),
+//! A pair across the border of two sections is in both. One pass over the pairs writes down which of them touch; the law is then evaluated for those only ([`super::contacts`]),
 //! in the order of the list. Which pairs touch does not depend on the other pairs of the list, so neither do the results.
-
-use core::ops::Range;
 
 use peristalsis_physics::real::Real;
 
-use super::answers::Answers;
+use super::book::RowTerms;
 use super::history::{Packed, PackedHistory};
 use super::record::{self, Record};
-use crate::bodies::Bodies;
+use super::spheres::{Own, Spheres};
 use crate::fast::lanes::{LANES, Lanes, Quad};
-use crate::fast::machine::{Machine, Work};
+use crate::fast::machine::{Machine, Work, eight_of};
 use crate::neighbours::Neighbours;
 
 /// Pairs one after the other, filled up to whole blocks with pairs that never touch.
@@ -31,23 +29,16 @@ impl Flat {
         self.reach.clear();
     }
 
-    /// The pairs of some rows of a list.
-    fn load<H: Copy + Default + PartialEq>(
-        &mut self,
-        list: &Neighbours<H>,
-        rows: Range<usize>,
-        diameter: &[f64],
-    ) {
-        self.clear();
-        for i in rows {
-            let (own, partners) = (diameter[i], list.partners(i));
-            let whole = self.first.len() + partners.len();
-            self.first.resize(whole, i as u32);
-            self.second.extend_from_slice(partners);
-            let reaches = partners.iter().map(|&j| 0.5 * (own + diameter[j as usize]));
-            self.reach.extend(reaches);
-        }
-        self.fill_up();
+    /// Takes up pairs whose first sphere is at place `first`.
+    fn extend(&mut self, first: usize, second: &[u32], spheres: &Spheres) {
+        let diameter = |place: usize| spheres.turning[place].0[3].abs();
+        let own = diameter(first);
+        self.first
+            .resize(self.first.len() + second.len(), first as u32);
+        let second = second.iter().map(|&number| spheres.place[number as usize]);
+        self.second.extend(second.clone());
+        let reaches = second.map(|place| 0.5 * (own + diameter(place as usize)));
+        self.reach.extend(reaches);
     }
 
     fn fill_up(&mut self) {
@@ -68,19 +59,22 @@ impl Flat {
     ) {
         found.resize(self.first.len() + LANES, 0);
         let mut end = 0;
-        let skin = Lanes::splat(skin);
+        let (skin, whole) = (Lanes::splat(skin), Lanes::splat(length));
         let blocks = self.first.as_chunks::<LANES>().0.iter();
         let blocks = blocks
             .zip(self.second.as_chunks::<LANES>().0)
             .zip(self.reach.as_chunks::<LANES>().0);
         for (block, ((first, second), reach)) in blocks.enumerate() {
+            let (i, j) = (eight_of(position, first), eight_of(position, second));
             let mut apart = [Quad::<M>::splat(0.0); LANES];
             for lane in 0..LANES {
-                let (i, j) = (first[lane] as usize, second[lane] as usize);
-                apart[lane] = position[i].quad() - position[j].quad();
+                apart[lane] = i[lane].quad() - j[lane].quad();
             }
-            let (separation, _) = record::into_lanes::<M>(apart);
-            let squared = record::periodic(separation, length).squared();
+            let (mut separation, _) = record::into_lanes::<M>(apart);
+            // To the nearest image.
+            let axial = separation.z.abs();
+            separation.z = axial.min(whole - axial);
+            let squared = separation.squared();
             let reach = Lanes::load(reach, 0) + skin;
             // Coincident centres have no normal.
             let near = squared.less(reach * reach) & Lanes::splat(0.0).less(squared);
@@ -92,15 +86,31 @@ impl Flat {
     }
 }
 
-/// The pairs of some rows of a list, and which of them touch.
+/// A pair of the list whose spheres are in two sections.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Border {
+    /// The section of its second sphere.
+    pub(super) section: u16,
+    /// Numbers of its spheres.
+    pub(super) first: u32,
+    pub(super) second: u32,
+    /// Its place in the list.
+    pub(super) at: u32,
+}
+
+/// Histories on their way from one list to the next, in the order of their places in the list.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Carried {
+    pub(super) places: Vec<u32>,
+    pub(super) histories: Vec<Packed>,
+}
+
+/// The pairs of a section, and which of them touch.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pairs {
-    /// Spheres whose rows these are: all grains, or all of the wall.
-    pub(super) rows: Range<usize>,
-    /// The first pair of the list that is in them, and how many are.
-    first: usize,
-    listed: usize,
     list: Flat,
+    /// The place of each in the list of all.
+    at: Vec<u32>,
     /// The pairs that may touch before others are chosen.
     pub(super) near: Flat,
     /// Which pair of the list each of them is.
@@ -112,96 +122,139 @@ pub(super) struct Pairs {
     now: u8,
     /// The pairs that touched at the last evaluation: only they have a history.
     pub(super) touched: Vec<u32>,
-    /// Their histories, on the way from one list to the next.
-    carried: Vec<Packed>,
     /// The near pairs that touch.
     pub(super) touching: Vec<u32>,
-    /// Energy of the tangential springs of contacts that have ended in this step.
-    pub(super) ended: Vec<f64>,
-    /// Where there are threads.
-    pub(super) answers: Answers,
+    /// Place in the list of all, and energy of the tangential spring, of contacts of the section's rows that have ended in
+    /// this step.
+    pub(super) ended: Vec<(u32, f64)>,
+    /// Where there are several sections.
+    pub(super) terms: RowTerms,
 }
 
 impl Pairs {
-    /// Makes the flat list from the rows, without histories.
-    pub(super) fn load<T: PackedHistory>(
+    /// Takes up `rows` of a list and, in its order, the pairs at the border whose second sphere is in the section; without
+    /// histories.
+    pub(super) fn load<H: Copy + Default + PartialEq>(
         &mut self,
-        list: &Neighbours<T::History<f64>>,
-        bodies: &Bodies,
+        list: &Neighbours<H>,
+        rows: impl Iterator<Item = usize>,
+        borders: &[Border],
+        spheres: &Spheres,
+        remembers: bool,
     ) {
-        let listed = self.listed_rows(list);
-        self.first = list.pairs_above(listed.start);
-        self.listed = list.pairs_above(listed.end) - self.first;
         // All others are fresh already.
         for &k in &self.touched {
             self.histories[k as usize] = Packed::default();
         }
         self.touched.clear();
-        self.stamp.clear();
-        // Wall against wall has no friction.
-        if T::ROTATES && self.rows.start < bodies.grains {
-            self.histories.resize(self.listed, Packed::default());
-            self.stamp.resize(self.listed, self.now.wrapping_sub(1));
+        self.list.clear();
+        self.at.clear();
+        let mut borders = borders.iter().peekable();
+        for row in rows {
+            while let Some(border) = borders.next_if(|border| (border.first as usize) < row) {
+                self.take_border(border, spheres);
+            }
+            let first = spheres.place[row] as usize;
+            self.list.extend(first, list.partners(row), spheres);
+            self.at.extend(list.range(row).map(|at| at as u32));
         }
-        self.list.load(list, listed, &bodies.diameter);
+        borders.for_each(|border| self.take_border(border, spheres));
+        self.list.fill_up();
+        self.stamp.clear();
+        if remembers {
+            self.histories.resize(self.at.len(), Packed::default());
+            self.stamp.resize(self.at.len(), self.now.wrapping_sub(1));
+        }
     }
 
-    fn listed_rows<H: Copy + Default + PartialEq>(&self, list: &Neighbours<H>) -> Range<usize> {
-        self.rows.start.min(list.rows())..self.rows.end.min(list.rows())
+    /// How many there are in the list.
+    pub(super) fn listed(&self) -> usize {
+        self.at.len()
     }
 
-    /// Takes the histories of its pairs out of those of the rows.
-    pub(super) fn take_up<T: PackedHistory>(&mut self, histories: &mut [T::History<f64>]) {
-        let histories = &mut histories[self.first..self.first + self.listed];
-        for (k, (packed, history)) in self.histories.iter_mut().zip(histories).enumerate() {
+    fn take_border(&mut self, border: &Border, spheres: &Spheres) {
+        let first = spheres.place[border.first as usize] as usize;
+        self.list.extend(first, &[border.second], spheres);
+        self.at.push(border.at);
+    }
+
+    /// Takes the histories of its pairs up from those of the rows.
+    pub(super) fn take_up<T: PackedHistory>(&mut self, histories: &[T::History<f64>]) {
+        let pairs = self.histories.iter_mut().zip(&self.at);
+        for (k, (packed, &at)) in (0..).zip(pairs) {
+            let history = &histories[at as usize];
             if *history != T::History::<f64>::default() {
-                *packed = T::pack(&core::mem::take(history));
+                *packed = T::pack(history);
+                self.touched.push(k);
+            }
+        }
+    }
+
+    /// The places in the list of all of the section's own contacts, and which pairs they are.
+    fn held(&self, own: Own) -> impl Iterator<Item = (u32, usize)> {
+        let touched = self.touched.iter().map(|&k| k as usize);
+        let owned = touched.filter(move |&k| own.holds(self.list.first[k] as usize));
+        owned.map(|k| (self.at[k], k))
+    }
+
+    /// Takes its histories out, to be put into another list.
+    pub(super) fn hand_over(&mut self, own: Own, carried: &mut Carried) {
+        carried.places.clear();
+        carried.histories.clear();
+        for (at, k) in self.held(own) {
+            carried.places.push(at);
+            carried.histories.push(self.histories[k]);
+        }
+        for &k in &self.touched {
+            self.histories[k as usize] = Packed::default();
+        }
+        self.touched.clear();
+    }
+
+    /// Puts in those that are at `places` in the new list, in order, where its pairs are.
+    pub(super) fn carry_on<'a>(&mut self, places: &[u32], history: impl Fn(usize) -> &'a Packed) {
+        let mut k = 0;
+        for (number, &place) in places.iter().enumerate() {
+            while self.at.get(k).is_some_and(|&at| at < place) {
+                k += 1;
+            }
+            if self.at.get(k) == Some(&place) {
+                self.histories[k] = *history(number);
                 self.touched.push(k as u32);
             }
         }
     }
 
-    /// Takes its histories out, to be put into another list.
-    pub(super) fn hand_over(&mut self, places: &mut Vec<u32>) {
-        let Self {
-            histories, touched, ..
-        } = self;
-        self.carried.clear();
-        let of = |&k: &u32| core::mem::take(&mut histories[k as usize]);
-        self.carried.extend(touched.iter().map(of));
-        places.extend(touched.iter().map(|k| self.first as u32 + k));
-        touched.clear();
-    }
-
-    /// Puts them in at their places in the new list, those of all stretches.
-    pub(super) fn carry_on(&mut self, places: &[u32]) {
-        let begin = places.partition_point(|&at| (at as usize) < self.first);
-        for (packed, at) in self.carried.iter().zip(&places[begin..]) {
-            let k = at - self.first as u32;
-            self.histories[k as usize] = *packed;
-            self.touched.push(k);
+    /// Writes the histories of its own contacts to those of the rows, which are fresh.
+    pub(super) fn store<T: PackedHistory>(&self, own: Own, histories: &mut [T::History<f64>]) {
+        for (at, k) in self.held(own) {
+            histories[at as usize] = T::unpack(&self.histories[k]);
         }
     }
 
-    /// Writes the histories back to those of the rows, which are fresh.
-    pub(super) fn store<T: PackedHistory>(&self, histories: &mut [T::History<f64>]) {
+    /// Makes them fresh again.
+    pub(super) fn freshen<H: Default>(&self, histories: &mut [H]) {
         for &k in &self.touched {
-            histories[self.first + k as usize] = T::unpack(&self.histories[k as usize]);
+            histories[self.at[k as usize] as usize] = H::default();
         }
     }
 
     /// Ends the histories of the pairs that touch no more.
-    pub(super) fn end_histories<T: PackedHistory>(&mut self, law: &T) {
+    pub(super) fn end_histories<T: PackedHistory>(&mut self, law: &T, own: Own) {
         self.now = self.now.wrapping_add(1);
         for at in &mut self.touching {
             *at = self.number[*at as usize];
             self.stamp[*at as usize] = self.now;
         }
         for &k in &self.touched {
-            if self.stamp[k as usize] != self.now {
-                let packed = &mut self.histories[k as usize];
-                let history = T::unpack(packed);
-                self.ended.push(law.stored_energy::<f64>(&history));
+            let k = k as usize;
+            if self.stamp[k] != self.now {
+                let packed = &mut self.histories[k];
+                if own.holds(self.list.first[k] as usize) {
+                    let history = T::unpack(packed);
+                    self.ended
+                        .push((self.at[k], law.stored_energy::<f64>(&history)));
+                }
                 *packed = Packed::default();
             }
         }

@@ -10,20 +10,19 @@ use crate::fast::threads::Cut;
 use crate::integrate::Past;
 use crate::wall::Grains;
 
-/// The spheres of [`Bodies`] in records of four numbers.
+/// The spheres of [`Bodies`] in records of four numbers, section after section: its grains, then its spheres of the wall.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spheres {
     pub(super) grains: usize,
-    /// Place, and turns round the tube.
+    /// The number of the sphere at each place, and the place of each sphere.
+    pub(super) number: Vec<u32>,
+    pub(super) place: Vec<u32>,
+    /// Where it is, and turns round the tube.
     pub(super) position: Vec<Record>,
     /// Velocity, and 0.
     pub(super) velocity: Vec<Record>,
-    /// Angular velocity, and the diameter.
+    /// Angular velocity, and the diameter, with a minus for spheres of the wall.
     pub(super) turning: Vec<Record>,
-    /// Force, and 0; between advances the acceleration.
-    pub(super) force: Vec<Record>,
-    /// Torque, and 0; between advances the angular acceleration.
-    pub(super) torque: Vec<Record>,
     /// Of the step before, as the integrator's [`Past`] has them.
     pub(super) velocity_before: Vec<Record>,
     pub(super) turning_before: Vec<Record>,
@@ -38,20 +37,30 @@ impl Spheres {
         self.position.len()
     }
 
+    /// Takes the spheres up, each at its place by `self.number`.
     pub(super) fn load(&mut self, bodies: &Bodies, past: &Past) {
         self.grains = bodies.grains;
+        let numbers = self.number.iter().map(|&number| number as usize);
+        self.place.resize(self.number.len(), 0);
+        for (place, number) in (0..).zip(numbers.clone()) {
+            self.place[number] = place;
+        }
         self.position.clear();
-        let places = bodies.position.iter().zip(&bodies.turns);
-        self.position
-            .extend(places.map(|(&place, &turns)| Record::new(place, f64::from(turns))));
+        let record = |i: usize| Record::new(bodies.position[i], f64::from(bodies.turns[i]));
+        self.position.extend(numbers.clone().map(record));
         self.turning.clear();
-        let turnings = bodies.angular_velocity.iter().zip(&bodies.diameter);
-        self.turning
-            .extend(turnings.map(|(&turning, &diameter)| Record::new(turning, diameter)));
+        let record = |i: usize| {
+            let diameter = bodies.diameter[i];
+            let signed = if i < bodies.grains {
+                diameter
+            } else {
+                -diameter
+            };
+            Record::new(bodies.angular_velocity[i], signed)
+        };
+        self.turning.extend(numbers.clone().map(record));
         for (records, vectors) in [
             (&mut self.velocity, &bodies.velocity),
-            (&mut self.force, &bodies.acceleration),
-            (&mut self.torque, &bodies.angular_acceleration),
             (&mut self.velocity_before, &past.velocity),
             (&mut self.turning_before, &past.angular_velocity),
             (&mut self.acceleration_before, &past.acceleration),
@@ -61,37 +70,33 @@ impl Spheres {
             ),
         ] {
             records.clear();
-            records.extend(vectors.iter().map(|&vector| Record::new(vector, 0.0)));
+            // The past of a first step is empty.
+            if !vectors.is_empty() {
+                records.extend(numbers.clone().map(|i| Record::new(vectors[i], 0.0)));
+            }
         }
         self.inverse_mass.clear();
         self.inverse_mass
-            .extend(bodies.mass.iter().map(|mass| 1.0 / mass));
+            .extend(numbers.clone().map(|i| 1.0 / bodies.mass[i]));
         self.inverse_inertia.clear();
         self.inverse_inertia
-            .extend(bodies.inertia.iter().map(|inertia| 1.0 / inertia));
+            .extend(numbers.map(|i| 1.0 / bodies.inertia[i]));
     }
 
     /// Writes the places back.
     pub(super) fn store_places(&self, bodies: &mut Bodies) {
-        for ((place, turns), record) in bodies
-            .position
-            .iter_mut()
-            .zip(&mut bodies.turns)
-            .zip(&self.position)
-        {
-            *place = record.vector();
-            *turns = record.0[3] as i32;
+        for (&number, record) in self.number.iter().zip(&self.position) {
+            bodies.position[number as usize] = record.vector();
+            bodies.turns[number as usize] = record.0[3] as i32;
         }
     }
 
-    /// Writes everything back; `force` and `torque` must hold accelerations.
+    /// Writes everything back but forces and torques.
     pub(super) fn store(&self, bodies: &mut Bodies, past: &mut Past) {
         self.store_places(bodies);
         for (vectors, records) in [
             (&mut bodies.velocity, &self.velocity),
             (&mut bodies.angular_velocity, &self.turning),
-            (&mut bodies.acceleration, &self.force),
-            (&mut bodies.angular_acceleration, &self.torque),
             (&mut past.velocity, &self.velocity_before),
             (&mut past.angular_velocity, &self.turning_before),
             (&mut past.acceleration, &self.acceleration_before),
@@ -100,27 +105,20 @@ impl Spheres {
                 &self.angular_acceleration_before,
             ),
         ] {
-            vectors.clear();
-            vectors.extend(records.iter().map(|record| record.vector()));
+            vectors.resize(records.len(), DVec3::ZERO);
+            for (&number, record) in self.number.iter().zip(records) {
+                vectors[number as usize] = record.vector();
+            }
         }
     }
-}
 
-impl Spheres {
-    /// What contacts ask of the spheres, and the forces on all of them.
-    pub(super) fn with_forces(&mut self) -> (Moving<'_>, ForcesMut<'_>) {
-        let moving = Moving {
-            grains: self.grains,
+    /// What contacts ask of the spheres.
+    pub(super) fn moving(&self) -> Moving<'_> {
+        Moving {
             position: &self.position,
             velocity: &self.velocity,
             turning: &self.turning,
-        };
-        let forces = ForcesMut {
-            first: 0,
-            force: &mut self.force,
-            torque: &mut self.torque,
-        };
-        (moving, forces)
+        }
     }
 
     /// All of the spheres, to be moved.
@@ -130,14 +128,12 @@ impl Spheres {
             position: &mut self.position,
             line: Degrees {
                 velocity: &mut self.velocity,
-                force: &mut self.force,
                 inverse: &self.inverse_mass,
                 velocity_before: &mut self.velocity_before,
                 acceleration_before: &mut self.acceleration_before,
             },
             spin: Degrees {
                 velocity: &mut self.turning,
-                force: &mut self.torque,
                 inverse: &self.inverse_inertia,
                 velocity_before: &mut self.turning_before,
                 acceleration_before: &mut self.angular_acceleration_before,
@@ -149,45 +145,90 @@ impl Spheres {
 /// Where the spheres are and how they move.
 #[derive(Clone, Copy)]
 pub(super) struct Moving<'a> {
-    pub(super) grains: usize,
     pub(super) position: &'a [Record],
     pub(super) velocity: &'a [Record],
     pub(super) turning: &'a [Record],
 }
 
-/// Forces and torques on a stretch of the spheres.
-pub(super) struct ForcesMut<'a> {
-    /// Number of its first sphere.
-    pub(super) first: usize,
-    pub(super) force: &'a mut [Record],
-    pub(super) torque: &'a mut [Record],
+/// Forces and torques on the spheres of a section: its grains, its spheres of the wall, and behind them one place for all
+/// spheres of other sections, where nobody reads. Between advances, accelerations.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Forces {
+    pub(super) force: Vec<Record>,
+    pub(super) torque: Vec<Record>,
+    pub(super) own: Own,
 }
 
-impl ForcesMut<'_> {
-    pub(super) fn reborrow(&mut self) -> ForcesMut<'_> {
-        ForcesMut {
-            first: self.first,
-            force: self.force,
-            torque: self.torque,
-        }
+/// The places of the spheres of a section.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Own {
+    pub(super) start: usize,
+    /// How many of its spheres are grains; they come first.
+    pub(super) grains: usize,
+    pub(super) number: usize,
+}
+
+impl Own {
+    /// Where the forces on the sphere at a place are added up.
+    #[inline(always)]
+    pub(super) fn at(self, place: usize) -> usize {
+        place.wrapping_sub(self.start).min(self.number)
+    }
+
+    /// Whether the sphere at a place belongs to the section.
+    #[inline(always)]
+    pub(super) fn holds(self, place: usize) -> bool {
+        place.wrapping_sub(self.start) < self.number
+    }
+
+    pub(super) fn all(self) -> Range<usize> {
+        self.start..self.start + self.number
+    }
+
+    pub(super) fn of_grains(self) -> Range<usize> {
+        self.start..self.start + self.grains
+    }
+
+    pub(super) fn of_wall(self) -> Range<usize> {
+        self.start + self.grains..self.start + self.number
     }
 }
 
-impl Cut for ForcesMut<'_> {
-    fn cut(self, at: usize) -> (Self, Self) {
-        let (force, force_behind) = self.force.split_at_mut(at);
-        let (torque, torque_behind) = self.torque.split_at_mut(at);
-        let before = Self {
-            first: self.first,
-            force,
-            torque,
-        };
-        let behind = Self {
-            first: self.first + at,
-            force: force_behind,
-            torque: torque_behind,
-        };
-        (before, behind)
+impl Forces {
+    /// Takes the accelerations of the spheres up that belong to the section.
+    pub(super) fn load(&mut self, own: Own, bodies: &Bodies, numbers: &[u32]) {
+        self.own = own;
+        for (records, vectors) in [
+            (&mut self.force, &bodies.acceleration),
+            (&mut self.torque, &bodies.angular_acceleration),
+        ] {
+            records.clear();
+            let numbers = numbers[own.all()].iter();
+            records.extend(numbers.map(|&number| Record::new(vectors[number as usize], 0.0)));
+            records.push(Record::ZERO);
+        }
+    }
+
+    /// Writes the accelerations back.
+    pub(super) fn store(&self, bodies: &mut Bodies, numbers: &[u32]) {
+        for (vectors, records) in [
+            (&mut bodies.acceleration, &self.force),
+            (&mut bodies.angular_acceleration, &self.torque),
+        ] {
+            for (&number, record) in numbers[self.own.all()].iter().zip(records) {
+                vectors[number as usize] = record.vector();
+            }
+        }
+    }
+
+    pub(super) fn of_grains(&mut self) -> [&mut [Record]; 2] {
+        let grains = self.own.grains;
+        [&mut self.force[..grains], &mut self.torque[..grains]]
+    }
+
+    pub(super) fn of_wall(&mut self) -> [&mut [Record]; 2] {
+        let wall = self.own.grains..self.own.number;
+        [&mut self.force[wall.clone()], &mut self.torque[wall]]
     }
 }
 
@@ -224,8 +265,6 @@ impl Cut for SpheresMut<'_> {
 /// Motion along lines, or spin, of a stretch of the spheres.
 pub(super) struct Degrees<'a> {
     pub(super) velocity: &'a mut [Record],
-    /// Force or torque.
-    pub(super) force: &'a mut [Record],
     /// 1/mass or 1/moment of inertia.
     pub(super) inverse: &'a [f64],
     /// Of the step before; none where the integrator needs none.
@@ -236,21 +275,18 @@ pub(super) struct Degrees<'a> {
 impl Cut for Degrees<'_> {
     fn cut(self, at: usize) -> (Self, Self) {
         let (velocity, velocity_behind) = self.velocity.split_at_mut(at);
-        let (force, force_behind) = self.force.split_at_mut(at);
         let (inverse, inverse_behind) = self.inverse.split_at(at);
         let known = at.min(self.velocity_before.len());
         let (velocity_before, its_behind) = self.velocity_before.split_at_mut(known);
         let (acceleration_before, acceleration_behind) = self.acceleration_before.split_at_mut(at);
         let before = Self {
             velocity,
-            force,
             inverse,
             velocity_before,
             acceleration_before,
         };
         let behind = Self {
             velocity: velocity_behind,
-            force: force_behind,
             inverse: inverse_behind,
             velocity_before: its_behind,
             acceleration_before: acceleration_behind,
@@ -259,15 +295,17 @@ impl Cut for Degrees<'_> {
     }
 }
 
-/// The grains of a stretch, with the forces and torques on them.
+/// The grains of a section, with the forces and torques on them.
 pub(super) struct GrainsMut<'a> {
     pub(super) moving: Moving<'a>,
-    pub(super) forces: ForcesMut<'a>,
+    /// Place of the first.
+    pub(super) first: usize,
+    pub(super) forces: [&'a mut [Record]; 2],
 }
 
 impl Grains for GrainsMut<'_> {
     fn grains(&self) -> Range<usize> {
-        self.forces.first..self.forces.first + self.forces.force.len()
+        self.first..self.first + self.forces[0].len()
     }
 
     #[inline(always)]
@@ -283,17 +321,15 @@ impl Grains for GrainsMut<'_> {
 
     #[inline(always)]
     fn force(&self, grain: usize) -> (DVec3, DVec3) {
-        let at = grain - self.forces.first;
-        (
-            self.forces.force[at].vector(),
-            self.forces.torque[at].vector(),
-        )
+        let [force, torque] = &self.forces;
+        let at = grain - self.first;
+        (force[at].vector(), torque[at].vector())
     }
 
     #[inline(always)]
     fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3) {
-        let at = grain - self.forces.first;
-        self.forces.force[at] = Record::new(force, 0.0);
-        self.forces.torque[at] = Record::new(torque, 0.0);
+        let at = grain - self.first;
+        self.forces[0][at] = Record::new(force, 0.0);
+        self.forces[1][at] = Record::new(torque, 0.0);
     }
 }

@@ -177,6 +177,15 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
+    fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]) {
+        unsafe {
+            let from = _mm256_cvtepu8_epi32(_mm_cvtsi64_si128(CHOSEN[usize::from(bits)]));
+            let chosen = _mm256_permutevar8x32_epi32(_mm256_loadu_si256(of.as_ptr().cast()), from);
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), chosen);
+        }
+    }
+
+    #[inline(always)]
     fn lanes_of([a, b, c, d, e, f, g, h]: [__m256d; LANES]) -> [[__m256d; 2]; 4] {
         let (low, high) = (transpose([a, b, c, d]), transpose([e, f, g, h]));
         core::array::from_fn(|k| [low[k], high[k]])
@@ -298,3 +307,21 @@ const fn places(unpack: bool) -> [[u32; 8]; 16] {
     }
     all
 }
+
+/// For each number of eight bits the places of those that are set, a byte each, in order.
+const CHOSEN: [i64; 256] = {
+    let mut table = [0; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut lane, mut at) = (0, 0);
+        while lane < LANES {
+            if bits >> lane & 1 == 1 {
+                table[bits] |= (lane as i64) << (8 * at);
+                at += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    table
+};

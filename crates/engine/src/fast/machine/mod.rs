@@ -147,5 +147,20 @@ fn with_avx2<W: Work>(work: W) -> W::Answer {
     work.run::<Avx2>()
 }
 
+/// Eight items of a slice. All numbers are looked at before one branch, instead of one by one.
+///
+/// # Panics
+/// Where there is no such item.
+#[inline(always)]
+pub(crate) fn eight_of<'a, T>(items: &'a [T], at: &[u32; LANES]) -> [&'a T; LANES] {
+    let end = u32::try_from(items.len()).unwrap_or(u32::MAX);
+    assert!(
+        at.iter().fold(true, |all, &at| all & (at < end)),
+        "within the slice"
+    );
+    // SAFETY: all are below the length.
+    at.map(|at| unsafe { items.get_unchecked(at as usize) })
+}
+
 #[cfg(test)]
 mod tests;

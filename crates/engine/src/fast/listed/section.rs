@@ -1,0 +1,229 @@
+//! Sections of the tube, for threads to share: each works out every contact of its own spheres.
+//!
+//! A contact across a border is worked out on both sides, with the same answer; the section that holds its row of the list
+//! counts it.
+
+use core::ops::Range;
+
+use super::motion::Moved;
+use super::network::Rings;
+use super::pairs::{Border, Carried, Pairs};
+use super::spheres::{Forces, Own, Spheres};
+use crate::bodies::Bodies;
+use crate::fast::threads::{PER_THREAD, Threads};
+use crate::neighbours::{Drift, Neighbours};
+use crate::wall::Wall;
+use crate::wall::memory::WallMemory;
+use crate::wall::sums::Waiting;
+
+/// The work that a grain, and a sphere of the wall, makes besides its pairs, in listed pairs.
+const PAIRS_OF_A_GRAIN: usize = 16;
+const PAIRS_OF_A_WALL_SPHERE: usize = 6;
+
+/// Where the wall has no rings, borders are sought at so many places for each section.
+const SLICES_OF_A_SECTION: usize = 16;
+
+/// A section of the tube.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Section {
+    pub(super) number: u16,
+    pub(super) own: Own,
+    pub(super) forces: Forces,
+    pub(super) moved: Moved,
+    pub(super) rings: Rings,
+    /// Since the list was made.
+    pub(super) drift: Drift,
+}
+
+/// What a section has for others.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Offer {
+    pub(super) borders: Vec<Border>,
+    pub(super) carried: Carried,
+}
+
+/// A section of grains in a prescribed wall.
+pub(super) struct BesideWall<H> {
+    /// Histories of contacts with the wall; its grains are counted from 0.
+    pub(super) memory: WallMemory<H>,
+    pub(super) sums: Waiting,
+}
+
+/// How the spheres are shared out to sections.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shares {
+    pub(super) sections: Vec<Section>,
+    /// The pairs of each whose first sphere is a grain, and those of wall spheres only.
+    pub(super) pairs: Vec<[Pairs; 2]>,
+    pub(super) offers: Vec<Offer>,
+    /// The section of each sphere, by its number.
+    pub(super) section_of: Vec<u16>,
+    /// Grains in each slice of the tube, and the work that they make.
+    work: Vec<usize>,
+    /// Room: the place of the next sphere of each section.
+    next: Vec<usize>,
+    /// Pairs across borders since the spheres were shared out: at first, and now.
+    borders: Option<(usize, usize)>,
+}
+
+impl Section {
+    pub(super) fn length(&self) -> usize {
+        self.own.number
+    }
+
+    /// Lists its pairs: the rows of its spheres, and of those of others the pairs that it has a sphere of.
+    pub(super) fn load_pairs<H: Copy + Default + PartialEq>(
+        &self,
+        [of_grains, of_wall]: &mut [Pairs; 2],
+        list: &Neighbours<H>,
+        spheres: &Spheres,
+        offers: &[Offer],
+        remembers: bool,
+    ) {
+        let borders = offers.iter().flat_map(|offer| &offer.borders);
+        let borders = borders.filter(|border| border.section == self.number);
+        let mut borders: Vec<Border> = borders.copied().collect();
+        borders.sort_unstable_by_key(|border| border.at);
+        let of_wall_begin =
+            borders.partition_point(|border| (border.first as usize) < spheres.grains);
+        let (at_grains, at_wall) = borders.split_at(of_wall_begin);
+        let rows = |places: Range<usize>| {
+            let numbers = spheres.number[places].iter().map(|&number| number as usize);
+            numbers.filter(|&row| row < list.rows())
+        };
+        let grains = rows(self.own.of_grains());
+        of_grains.load(list, grains, at_grains, spheres, remembers);
+        let wall = rows(self.own.of_wall());
+        // Wall against wall has no friction.
+        of_wall.load(list, wall, at_wall, spheres, false);
+    }
+}
+
+impl Offer {
+    /// Looks for the pairs in the rows of a section whose second sphere is in another.
+    pub(super) fn find_borders<H: Copy + Default + PartialEq>(
+        &mut self,
+        section: &Section,
+        list: &Neighbours<H>,
+        spheres: &Spheres,
+        section_of: &[u16],
+    ) {
+        let own = section.number;
+        self.borders.clear();
+        for &row in &spheres.number[section.own.all()] {
+            let row = row as usize;
+            if row >= list.rows() {
+                continue;
+            }
+            for (at, &second) in list.range(row).zip(list.partners(row)) {
+                let section = section_of[second as usize];
+                if section != own {
+                    self.borders.push(Border {
+                        section,
+                        first: row as u32,
+                        second,
+                        at: at as u32,
+                    });
+                }
+            }
+        }
+    }
+}
+
+impl Shares {
+    /// Whether sections reach so far into each other that they are better shared out again.
+    pub(super) fn are_worn(&self) -> bool {
+        let pairs = self.pairs.iter().map(|[of_grains, _]| of_grains.listed());
+        self.borders
+            .is_some_and(|(first, now)| now > 2 * first + pairs.sum::<usize>() / 100)
+    }
+
+    pub(super) fn count_borders(&mut self) {
+        let now = self.offers.iter().map(|offer| offer.borders.len()).sum();
+        let first = self.borders.map_or(now, |(first, _)| first);
+        self.borders = Some((first, now));
+    }
+
+    /// Cuts the tube into sections of about the same work, between rings of an elastic wall, one for one thread; answers
+    /// the spheres' numbers, section by section.
+    pub(super) fn share_out<H: Copy + Default + PartialEq>(
+        &mut self,
+        bodies: &Bodies,
+        list: &Neighbours<H>,
+        wall: &Wall,
+        threads: &Threads,
+        numbers: &mut Vec<u32>,
+    ) {
+        let (grains, all) = (bodies.grains, bodies.number());
+        let (rings, per_ring) = wall.elastic().map_or((0, 0), |wall| {
+            let lattice = wall.lattice();
+            (lattice.rings() as usize, lattice.spheres_per_ring as usize)
+        });
+        let most = match threads.number() {
+            1 => 1,
+            threads => PER_THREAD * threads,
+        };
+        let slices = match rings {
+            0 => SLICES_OF_A_SECTION * most,
+            rings => rings,
+        };
+        let sections = most.min(slices);
+        let slice_of = |grain: usize| {
+            let along = bodies.position[grain].z / wall.length();
+            ((along * slices as f64) as usize).min(slices - 1)
+        };
+        self.work.clear();
+        self.work.resize(slices, PAIRS_OF_A_WALL_SPHERE * per_ring);
+        for grain in 0..grains {
+            let pairs = if grain < list.rows() {
+                list.range(grain).len()
+            } else {
+                0
+            };
+            self.work[slice_of(grain)] += PAIRS_OF_A_GRAIN + pairs;
+        }
+        // Of each slice, its section.
+        let whole = self.work.iter().sum::<usize>().max(1);
+        let mut before = 0;
+        for work in &mut self.work {
+            let section = before * sections / whole;
+            before += *work;
+            *work = section.min(sections - 1);
+        }
+        let section_of_slice = &self.work[..];
+        self.section_of.clear();
+        self.section_of
+            .extend((0..grains).map(|grain| section_of_slice[slice_of(grain)] as u16));
+        let of_wall = (0..rings).flat_map(|ring| core::iter::repeat_n(ring, per_ring));
+        self.section_of
+            .extend(of_wall.map(|ring| section_of_slice[ring] as u16));
+        self.section_of.resize(all, 0);
+
+        self.borders = None;
+        self.sections.resize_with(sections, Section::default);
+        self.pairs.resize_with(sections, Default::default);
+        self.offers.resize_with(sections, Offer::default);
+        for (number, section) in (0..).zip(&mut self.sections) {
+            (section.number, section.own) = (number, Own::default());
+        }
+        for (sphere, &section) in self.section_of.iter().enumerate() {
+            let own = &mut self.sections[section as usize].own;
+            own.number += 1;
+            own.grains += usize::from(sphere < grains);
+        }
+        self.next.clear();
+        let mut end = 0;
+        for section in &mut self.sections {
+            section.own.start = end;
+            self.next.push(end);
+            end += section.own.number;
+        }
+        numbers.clear();
+        numbers.resize(all, 0);
+        for (sphere, &section) in (0..).zip(&self.section_of) {
+            let place = &mut self.next[section as usize];
+            numbers[*place] = sphere;
+            *place += 1;
+        }
+    }
+}
