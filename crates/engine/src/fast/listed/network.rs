@@ -133,12 +133,12 @@ impl Work for WallForces<'_> {
         match self.tally.take() {
             Some(tally) => {
                 let mut sums = Sums::<M>::default();
-                self.add::<M>(&mut sums);
+                self.add_to::<M>(&mut sums);
                 sums.add_to(tally);
             }
             None => {
                 let mut terms = core::mem::take(&mut self.rings.terms);
-                self.add::<M>(&mut terms);
+                self.add_to::<M>(&mut terms);
                 self.rings.terms = terms;
             }
         }
@@ -147,7 +147,18 @@ impl Work for WallForces<'_> {
 
 impl WallForces<'_> {
     #[inline(always)]
-    fn add<M: Machine>(&mut self, book: &mut impl Book<M>) {
+    fn add_to<M: Machine>(&mut self, book: &mut impl Book<M>) {
+        let network = &self.wall.parameters().network;
+        let dissipates = network.spring_damping != 0.0 || network.drag != 0.0;
+        match self.complete || dissipates {
+            true => self.add::<M, _, true>(book),
+            false => self.add::<M, _, false>(book),
+        }
+    }
+
+    /// With or without energies and dissipation.
+    #[inline(always)]
+    fn add<M: Machine, B: Book<M>, const ALL: bool>(&mut self, book: &mut B) {
         let wall = self.wall;
         let Rings { rows, of_rings, .. } = &mut *self.rings;
         let Moving {
@@ -176,13 +187,7 @@ impl WallForces<'_> {
         rows.velocity.fill_ring::<M>(&velocity[below]);
         rows.place_above.fill_ring::<M>(&position[range(first)]);
         rows.velocity_above.fill_ring::<M>(&velocity[range(first)]);
-        bonds(
-            wall,
-            rows,
-            (first + 1) % 2,
-            &mut Sums::<M>::default(),
-            false,
-        );
+        bonds::<M, _, ALL>(wall, rows, (first + 1) % 2, &mut Sums::<M>::default());
         let rings = self.force.chunks_exact_mut(per_ring);
         for (ring, forces) in (first..).zip(rings) {
             core::mem::swap(&mut rows.place, &mut rows.place_above);
@@ -195,15 +200,15 @@ impl WallForces<'_> {
                 *turns = place.0[3];
             }
             carry::<M>(rows, ring % 2, per_ring);
-            bonds(wall, rows, ring % 2, book, self.complete);
-            tethers_and_drive(wall, rows, ring, book, self.complete);
+            bonds::<M, _, ALL>(wall, rows, ring % 2, book);
+            tethers_and_drive::<M, _, ALL>(wall, rows, ring, book);
             let (mut ring_force, mut ring_velocity) = (nothing, nothing);
             let blocks = forces.chunks_mut(LANES).zip(velocity[here].chunks(LANES));
             for (block, (forces, velocities)) in blocks.enumerate() {
                 let more = rows.force.load::<M>(block * LANES + 1);
                 let more = record::from_lanes(more, Lanes::splat(0.0));
-                for ((force, velocity), more) in forces.iter_mut().zip(velocities).zip(more) {
-                    let whole = force.quad() + more;
+                for (lane, (force, velocity)) in forces.iter_mut().zip(velocities).enumerate() {
+                    let whole = force.quad() + more[lane];
                     *force = whole.record();
                     ring_force = ring_force + whole;
                     ring_velocity = ring_velocity + velocity.quad();
@@ -306,17 +311,16 @@ impl<M: Machine> Bond<M> {
 
 /// Forces of the bonds of a ring of parity `parity`.
 #[inline(always)]
-fn bonds<M: Machine>(
+fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
     wall: &ElasticWall,
     rows: &mut Rows,
     parity: usize,
-    book: &mut impl Book<M>,
-    complete: bool,
+    book: &mut B,
 ) {
     let parameters = wall.parameters();
     let per_ring = parameters.lattice.spheres_per_ring as usize;
     let network = &parameters.network;
-    let damped = network.spring_damping != 0.0;
+    let damped = ALL && network.spring_damping != 0.0;
     let bond = Bond {
         stiffness: Lanes::splat(network.spring_stiffness),
         natural_length: Lanes::splat(network.natural_length),
@@ -339,7 +343,7 @@ fn bonds<M: Machine>(
         let along = bond.force(here, next, valid, &mut terms[0]);
         let first = bond.force(here, first, valid, &mut terms[1]);
         let second = bond.force(here, second, valid, &mut terms[2]);
-        if complete || damped {
+        if ALL {
             book.bonds(terms);
         }
         rows.along.store(start + 1, along);
@@ -351,12 +355,11 @@ fn bonds<M: Machine>(
 
 /// Sums all forces on the spheres of a ring except contact forces.
 #[inline(always)]
-fn tethers_and_drive<M: Machine>(
+fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
     wall: &ElasticWall,
     rows: &mut Rows,
     ring: usize,
-    book: &mut impl Book<M>,
-    complete: bool,
+    book: &mut B,
 ) {
     let parameters = wall.parameters();
     let lattice = &parameters.lattice;
@@ -374,7 +377,7 @@ fn tethers_and_drive<M: Machine>(
         Lanes::splat(tethers.azimuthal),
         Lanes::splat(tethers.axial),
     );
-    let drag = Lanes::splat(network.drag);
+    let (drags, drag) = (network.drag != 0.0, Lanes::splat(network.drag));
     let radius = Lanes::splat(parameters.mean_radius);
     let reference_z = Lanes::splat(lattice.axial_position(ring as u32));
     let parity = ring % 2;
@@ -410,7 +413,7 @@ fn tethers_and_drive<M: Machine>(
         let (drive_x, drive_y) = (push * drive_cos, push * drive_sin);
         let drive_power = drive_x * velocity.x + drive_y * velocity.y;
         book.drive(Lanes::select(valid, drive_power, zero));
-        if complete || network.drag != 0.0 {
+        if ALL {
             let keep_energy = half
                 * (radial * away_radial * away_radial
                     + azimuthal * away_across * away_across
@@ -426,7 +429,11 @@ fn tethers_and_drive<M: Machine>(
             drive_x + (outward * cos - across * sin),
             drive_y + (outward * sin + across * cos),
             -(axial * away_axial),
-        ) - velocity * drag;
+        );
+        let tethers_and_drive = match drags {
+            true => tethers_and_drive - velocity * drag,
+            false => tethers_and_drive,
+        };
         let springs = (rows.along.load(start + 1) - rows.along.load(start))
             + (rows.first.load(start + 1) + rows.second.load(start + 1))
             + rows.carried.load(start + 1);
