@@ -13,6 +13,25 @@ pub(crate) struct Columns {
     pub(crate) z: Vec<f64>,
 }
 
+/// A stretch of [`Columns`]. Those of one length are looked at once where they are read at one place.
+#[derive(Clone, Copy)]
+pub(crate) struct ColumnsRef<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    z: &'a [f64],
+}
+
+impl ColumnsRef<'_> {
+    #[inline(always)]
+    pub(crate) fn load<M: Machine>(self, start: usize) -> LaneVector<M> {
+        LaneVector::new(
+            Lanes::load(self.x, start),
+            Lanes::load(self.y, start),
+            Lanes::load(self.z, start),
+        )
+    }
+}
+
 /// A stretch of [`Columns`] to be written to.
 pub(crate) struct ColumnsMut<'a> {
     pub(crate) x: &'a mut [f64],
@@ -74,6 +93,26 @@ impl Columns {
     pub(crate) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
         let sum = self.load(start) + vector;
         self.store(start, sum);
+    }
+
+    /// The first so many vectors.
+    #[inline(always)]
+    pub(crate) fn first(&self, length: usize) -> ColumnsRef<'_> {
+        ColumnsRef {
+            x: &self.x[..length],
+            y: &self.y[..length],
+            z: &self.z[..length],
+        }
+    }
+
+    /// The same, to be written to.
+    #[inline(always)]
+    pub(crate) fn first_mut(&mut self, length: usize) -> ColumnsMut<'_> {
+        ColumnsMut {
+            x: &mut self.x[..length],
+            y: &mut self.y[..length],
+            z: &mut self.z[..length],
+        }
     }
 
     #[inline(always)]

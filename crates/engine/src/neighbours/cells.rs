@@ -1,6 +1,7 @@
 //! Spheres by cells, and the search for pairs among them, eight candidates at a time.
 
 use core::ops::Range;
+use core::slice;
 
 use glam::DVec3;
 use peristalsis_physics::real::Real;
@@ -252,6 +253,27 @@ impl Side {
         self.number_in_lanes.resize(spheres + LANES, 0.0);
     }
 
+    /// The first so many, eight by eight, and whatever fills up the last eight.
+    #[inline(always)]
+    fn blocks(&self, spheres: usize) -> impl Iterator<Item = Block<'_>> {
+        let all = ..spheres.next_multiple_of(LANES);
+        let Columns { x, y, z } = &self.place;
+        let [x, y, z, radius, number_in_lanes] =
+            [x, y, z, &self.radius, &self.number_in_lanes].map(|column| eights(&column[all]));
+        let places = x.zip(y).zip(z).zip(radius);
+        let numbers = number_in_lanes.zip(eights(&self.number[all]));
+        places
+            .zip(numbers)
+            .map(|((((x, y), z), radius), (number_in_lanes, number))| Block {
+                x,
+                y,
+                z,
+                radius,
+                number_in_lanes,
+                number,
+            })
+    }
+
     /// Copies the eight from place `from` on of others to place `to` and on.
     #[inline(always)]
     fn copy<M: Machine>(&mut self, to: usize, others: &Self, from: usize) {
@@ -260,6 +282,20 @@ impl Side {
         Lanes::<M>::load(&others.number_in_lanes, from).store(&mut self.number_in_lanes, to);
         self.number[to..to + LANES].copy_from_slice(&others.number[from..from + LANES]);
     }
+}
+
+/// Eight spheres side by side.
+struct Block<'a> {
+    x: &'a [f64; LANES],
+    y: &'a [f64; LANES],
+    z: &'a [f64; LANES],
+    radius: &'a [f64; LANES],
+    number_in_lanes: &'a [f64; LANES],
+    number: &'a [u32; LANES],
+}
+
+fn eights<T>(column: &[T]) -> slice::Iter<'_, [T; LANES]> {
+    column.as_chunks().0.iter()
 }
 
 /// Spheres in the order of their cells; in a cell by their numbers.
@@ -379,7 +415,7 @@ impl Work for Search<'_> {
             around,
         } = piece;
         ends.clear();
-        let (half, whole) = (Lanes::<M>::splat(0.5 * length), Lanes::splat(length));
+        let whole = Lanes::<M>::splat(length);
         let mut end = 0;
         for cell in these.clone() {
             if of.iter().all(|of| of.of_cell(cell).is_empty()) {
@@ -399,22 +435,21 @@ impl Work for Search<'_> {
                     );
                     let reach = Lanes::splat(of.spheres.radius[j] + skin);
                     let this = Lanes::splat(of.spheres.number_in_lanes[j]);
-                    for block in (0..number).step_by(LANES) {
-                        let mut separation = place - around.place.load(block);
-                        separation.z = separation.z.abs();
-                        separation.z = Lanes::select(
-                            half.less(separation.z),
-                            whole - separation.z,
-                            separation.z,
+                    for block in around.blocks(number) {
+                        let places = LaneVector::new(
+                            Lanes::from_array(block.x),
+                            Lanes::from_array(block.y),
+                            Lanes::from_array(block.z),
                         );
-                        let reach = reach + Lanes::load(&around.radius, block);
+                        let mut separation = place - places;
+                        // To the nearest image.
+                        let axial = separation.z.abs();
+                        separation.z = axial.min(whole - axial);
+                        let reach = reach + Lanes::from_array(block.radius);
                         let near = separation.squared().less(reach * reach)
-                            & Lanes::load(&around.number_in_lanes, block).less(this);
-                        let numbers = &around.number[block..block + LANES];
-                        near.choose(
-                            numbers.first_chunk().expect("a block of numbers"),
-                            smaller[end..].first_chunk_mut().expect("room for a block"),
-                        );
+                            & Lanes::from_array(block.number_in_lanes).less(this);
+                        let window = smaller[end..].first_chunk_mut();
+                        near.choose(block.number, window.expect("room for a block"));
                         end += near.count() as usize;
                     }
                     ends.push((of.spheres.number[j], end as u32));

@@ -122,8 +122,10 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
     for block in pairs.touching.chunks(LANES) {
         let contacts = block.len();
         // Lanes to spare do the last contact again, to no effect.
-        let mut near = [block[contacts - 1]; LANES];
-        near[..contacts].copy_from_slice(block);
+        let near = match block.first_chunk() {
+            Some(whole) => *whole,
+            None => core::array::from_fn(|lane| block[lane.min(contacts - 1)]),
+        };
         let pair = eight_of(&pairs.number, &near).map(|&pair| pair);
         let first = eight_of(&pairs.near.first, &near).map(|&place| place);
         let second = eight_of(&pairs.near.second, &near).map(|&place| place);

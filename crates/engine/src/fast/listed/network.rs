@@ -66,6 +66,11 @@ pub(super) struct Rows {
     sin: [Vec<f64>; 2],
 }
 
+/// Length of the columns for a ring of so many spheres.
+fn room_for(spheres: usize) -> usize {
+    spheres.next_multiple_of(LANES) + 2 * LANES
+}
+
 impl Rows {
     fn resize(&mut self, wall: &ElasticWall) {
         let spheres = wall.lattice().spheres_per_ring as usize;
@@ -80,7 +85,7 @@ impl Rows {
             &mut self.carried,
             &mut self.force,
         ] {
-            row.clear(spheres.next_multiple_of(LANES) + 2 * LANES);
+            row.clear(room_for(spheres));
         }
         let room = spheres.next_multiple_of(LANES);
         self.turns.clear();
@@ -327,17 +332,24 @@ fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
         damping: damped.then_some(Lanes::splat(network.spring_damping)),
         length: parameters.lattice.length(),
     };
+    let room = room_for(per_ring);
+    let (place, velocity) = (rows.place.first(room), rows.velocity.first(room));
+    let place_above = rows.place_above.first(room);
+    let velocity_above = rows.velocity_above.first(room);
+    let mut on_along = rows.along.first_mut(room);
+    let mut on_first = rows.first.first_mut(room);
+    let mut on_second = rows.second.first_mut(room);
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);
-        let here = (rows.place.load(start + 1), rows.velocity.load(start + 1));
-        let next = (rows.place.load(start + 2), rows.velocity.load(start + 2));
+        let here = (place.load(start + 1), velocity.load(start + 1));
+        let next = (place.load(start + 2), velocity.load(start + 2));
         let first = (
-            rows.place_above.load(start + parity),
-            rows.velocity_above.load(start + parity),
+            place_above.load(start + parity),
+            velocity_above.load(start + parity),
         );
         let second = (
-            rows.place_above.load(start + parity + 1),
-            rows.velocity_above.load(start + parity + 1),
+            place_above.load(start + parity + 1),
+            velocity_above.load(start + parity + 1),
         );
         let mut terms = [[Lanes::splat(0.0); 2]; 3];
         let along = bond.force(here, next, valid, &mut terms[0]);
@@ -346,9 +358,9 @@ fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
         if ALL {
             book.bonds(terms);
         }
-        rows.along.store(start + 1, along);
-        rows.first.store(start + 1, first);
-        rows.second.store(start + 1, second);
+        on_along.store(start + 1, along);
+        on_first.store(start + 1, first);
+        on_second.store(start + 1, second);
     }
     rows.along.close(per_ring);
 }
@@ -381,18 +393,22 @@ fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
     let radius = Lanes::splat(parameters.mean_radius);
     let reference_z = Lanes::splat(lattice.axial_position(ring as u32));
     let parity = ring % 2;
+    let (room, in_lanes) = (room_for(per_ring), per_ring.next_multiple_of(LANES));
+    let (places, velocities) = (rows.place.first(room), rows.velocity.first(room));
+    let (along, carried) = (rows.along.first(room), rows.carried.first(room));
+    let (first, second) = (rows.first.first(room), rows.second.first(room));
+    let (cos, sin) = (&rows.cos[parity][..in_lanes], &rows.sin[parity][..in_lanes]);
+    let turns = &rows.turns[..in_lanes];
+    let mut force = rows.force.first_mut(room);
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);
-        let place = rows.place.load(start + 1);
-        let velocity = rows.velocity.load(start + 1);
-        let (cos, sin) = (
-            Lanes::load(&rows.cos[parity], start),
-            Lanes::load(&rows.sin[parity], start),
-        );
+        let place = places.load(start + 1);
+        let velocity = velocities.load(start + 1);
+        let (cos, sin) = (Lanes::load(cos, start), Lanes::load(sin, start));
         let (x, y) = (place.x - radius * cos, place.y - radius * sin);
         let away_radial = x * cos + y * sin;
         let away_across = y * cos - x * sin;
-        let turns = Lanes::load(&rows.turns, start);
+        let turns = Lanes::load(turns, start);
         let away_axial = place.z + turns * Lanes::splat(length) - reference_z;
         let outward = balance - radial * away_radial;
         let across = -(azimuthal * away_across);
@@ -434,9 +450,9 @@ fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
             true => tethers_and_drive - velocity * drag,
             false => tethers_and_drive,
         };
-        let springs = (rows.along.load(start + 1) - rows.along.load(start))
-            + (rows.first.load(start + 1) + rows.second.load(start + 1))
-            + rows.carried.load(start + 1);
-        rows.force.store(start + 1, springs + tethers_and_drive);
+        let springs = (along.load(start + 1) - along.load(start))
+            + (first.load(start + 1) + second.load(start + 1))
+            + carried.load(start + 1);
+        force.store(start + 1, springs + tethers_and_drive);
     }
 }
