@@ -168,7 +168,7 @@ impl Contract<'_> {
         self.refuse(kind, path, place, message, allowed(schema));
     }
 
-    /// Notes a problem with a key at one place, of which something is said.
+    /// Notes a problem with a key at one place of the text.
     fn refuse(
         &mut self,
         kind: ProblemKind,

@@ -67,7 +67,7 @@ impl Paper {
         page.srgb()
     }
 
-    /// Colours of the page, of what is written on it, and of what is less important.
+    /// Colours of the page, of its text, and of less important text.
     fn colours(self) -> [Colour; 3] {
         match self {
             Self::Light => [WHITE, BLACK, Colour::new(90, 90, 90)],

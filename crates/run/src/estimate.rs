@@ -229,8 +229,8 @@ fn trial_steps(configuration: &Configuration) -> u64 {
     steps.clamp(LEAST_STEPS, configuration.run.steps().max(LEAST_STEPS))
 }
 
-/// A tube of fewer grains like that of a configuration, how many times more that has, and whether it is the same tube but
-/// for its length.
+/// A tube like the configured one with fewer grains, the ratio of their numbers of grains, and whether the two tubes differ
+/// in length alone.
 fn smaller(configuration: &Configuration) -> (Configuration, f64, bool) {
     let mut trial = configuration.clone();
     let mut scale = 1.0;

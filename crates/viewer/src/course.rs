@@ -85,7 +85,7 @@ impl Course {
         self.ahead.pop_front_if(|turn| turn.step <= step)
     }
 
-    /// Steps up to what is to be done again next, at most `most`.
+    /// Steps to the next turn that has to be repeated, at most `most`.
     pub(crate) fn steps_to_next(&self, run: &Run, most: u64) -> u64 {
         let step = run.simulation().step();
         self.ahead

@@ -18,7 +18,7 @@ pub struct Onlooker {
 }
 
 impl Onlooker {
-    /// The first message to the page, in JSON. Friction has no slider: it is none of the drive.
+    /// The first message to the page, in JSON. Friction has no slider, since it does not belong to the drive.
     pub fn welcome(&mut self, run: &Run, title: &str) -> String {
         let (configuration, simulation) = (run.configuration(), run.simulation());
         let grains = simulation.bodies().grains;

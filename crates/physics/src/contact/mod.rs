@@ -54,8 +54,8 @@ pub fn reduced_radius<R: Real>(diameter: R, other: R) -> R {
 }
 
 impl<R: Real> Contact<R> {
-    /// The contact of spheres of diameters d_i and d_j at r_i - r_j = `separation`, v_i - v_j = `relative_velocity`,
-    /// neither of which rotates.
+    /// The contact of spheres of diameters d_i and d_j at r_i - r_j = `separation`, v_i - v_j = `relative_velocity`.
+    /// Neither sphere rotates.
     #[inline(always)]
     pub fn new(
         (diameter, other): (R, R),

@@ -67,7 +67,7 @@ pub struct CundallStrack {
     /// Kinetic friction mu_k, not above static_friction. If only static_friction is given, equal to it.
     #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1e6))]
     pub kinetic_friction: f64,
-    /// What becomes of the tangential displacement while a contact slides. Without effect while both frictions are 0.
+    /// How the tangential displacement changes while a contact slides. Without effect while both frictions are 0.
     pub sliding: Sliding,
 }
 

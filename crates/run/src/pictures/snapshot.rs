@@ -18,7 +18,7 @@ const WAVES: u32 = 4;
 const DIAMETERS: f64 = 1000.0;
 /// How far from the axis a snapshot shows spheres, in radii of the tube.
 const RADII: f64 = 2.5;
-/// How far at most, in lengths of what is shown: a picture of a wider tube would be all height.
+/// The same limit in lengths of the part of the tube that is shown, so that the picture of a wide tube is not too high.
 const LENGTHS: f64 = 2.0;
 /// Places at which a snapshot knows the radius of a prescribed wall.
 const OUTLINE_POINTS: u32 = 400;

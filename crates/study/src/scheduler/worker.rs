@@ -89,7 +89,7 @@ fn carry_out(
         Verdict::Damaged(reason) => {
             shared.store.quarantine_run(identity, &reason)?;
             shared.tell(format!(
-                "run {identity} is not what was sealed ({reason}): moved aside, computed again"
+                "the files of run {identity} differ from its seal ({reason}): moved aside, computed again"
             ));
         }
         Verdict::Nothing | Verdict::Checkpointed => {}

@@ -57,7 +57,7 @@ impl Store {
                 Verdict::Damaged(reason) => {
                     self.quarantine_run(identity, &reason)?;
                     news.push(format!(
-                        "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
+                        "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
                     ));
                     changed.push((identity, Entry::new(State::Quarantined, Some(reason))));
                 }

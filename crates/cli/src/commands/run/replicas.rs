@@ -26,7 +26,7 @@ const STEM: &str = "seed-";
 
 /// The folders of replicas.
 pub(super) struct Replicas {
-    /// Taken, so that no other program goes on with them; that of each is taken when its turn comes.
+    /// Locked, so that no other program goes on with the replicas. The folder of each replica is locked when its turn comes.
     folder: RunFolder,
     each: Vec<(u64, PathBuf)>,
     /// The warnings that were said already.

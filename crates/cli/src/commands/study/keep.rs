@@ -64,7 +64,7 @@ fn in_words(found: &Verification) -> String {
 fn moved_aside(runs: &[(Identity, String)]) -> impl Iterator<Item = String> {
     runs.iter().map(|(identity, reason)| {
         format!(
-            "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
+            "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
         )
     })
 }

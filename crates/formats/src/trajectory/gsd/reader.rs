@@ -104,7 +104,7 @@ impl GsdReader {
         self.lost
     }
 
-    /// A logged value of a frame, `time` included, without the rest of the frame; `None` where there is none of that name.
+    /// A logged value of a frame, or its `time`, without the rest of the frame; `None` where the frame has no such value.
     ///
     /// # Errors
     /// As [`GsdReader::frame`].
