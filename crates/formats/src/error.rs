@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::value_kind::ValueKind;
 
-/// What can go wrong between a value in memory and its bytes on disk.
+/// Errors between a value in memory and its bytes on disk.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FormatError {

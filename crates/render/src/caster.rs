@@ -185,7 +185,7 @@ fn meet(row: &Row, height: f32, spheres: &[Disc], numbers: &[usize], nearest: &m
     }
 }
 
-/// What each ray of a pixel sees; the light on a sphere is worked out once for all its rays.
+/// The colour of each ray of a pixel; the light on a sphere is computed once for all its rays.
 fn behind(
     met: &[Meeting; RAYS_A_PIXEL],
     opaque: &[Disc],

@@ -1,4 +1,4 @@
-//! What is seen through glass.
+//! Spheres seen through glass.
 
 use glam::Vec3;
 

@@ -23,7 +23,7 @@ const PROFILE: &str = "profile.parquet";
 const WAVES: &str = "waves.parquet";
 const TRANSIT: &str = "transit.parquet";
 const STATE: &str = "state.checkpoint";
-/// What a run may leave besides its figures and trajectories.
+/// Files that a run may leave besides its figures and trajectories.
 const FILES: [&str; 8] = [
     CONFIGURATION,
     SUMMARY,

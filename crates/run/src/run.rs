@@ -369,7 +369,7 @@ impl Run {
     }
 }
 
-/// What a checkpoint of a run says of itself.
+/// Header of the checkpoint of a run.
 fn identity(physics_hash: [u8; 32]) -> CheckpointIdentity {
     CheckpointIdentity {
         kind: *b"run     ",

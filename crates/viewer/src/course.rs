@@ -79,7 +79,7 @@ impl Course {
         self.mark(run);
     }
 
-    /// What is to be done again at the present step.
+    /// The next turn, if it has to be repeated at the present step.
     pub(crate) fn due(&mut self, run: &Run) -> Option<Turn> {
         let step = run.simulation().step();
         self.ahead.pop_front_if(|turn| turn.step <= step)

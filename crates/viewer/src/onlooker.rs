@@ -6,7 +6,7 @@ use crate::frame::{Head, contacts_of, of_run};
 use crate::timeline::{Driven, rows, thin};
 use crate::welcome::Welcome;
 
-/// What a page has been told of a run that somebody else advances and steers.
+/// The side of a page that shows a run which somebody else advances and steers.
 #[derive(Debug, Default)]
 pub struct Onlooker {
     /// Whether frames hold the contacts of the grains.

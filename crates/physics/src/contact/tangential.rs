@@ -25,7 +25,7 @@ impl TangentialLaw for Frictionless {
     }
 }
 
-/// What becomes of the tangential displacement u while a contact slides.
+/// How the tangential displacement u changes while a contact slides.
 ///
 /// `Spring` leaves what sliding friction can hold. `Balance` lets spring and dashpot together balance the sliding force.
 /// `Literal` is one way to read the source's words.

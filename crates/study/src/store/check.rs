@@ -11,7 +11,7 @@ use super::{
 use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 
-/// What a check of the files found.
+/// Result of a check of the files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verification {
     /// Finished runs whose hashes check.

@@ -1,4 +1,4 @@
-//! What `peristalsis render` is asked for.
+//! The options of `peristalsis render`.
 
 use std::path::PathBuf;
 

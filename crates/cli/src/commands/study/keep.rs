@@ -60,7 +60,7 @@ fn in_words(found: &Verification) -> String {
     text
 }
 
-/// What is said of runs whose files were not whole.
+/// Messages about runs whose files were not whole.
 fn moved_aside(runs: &[(Identity, String)]) -> impl Iterator<Item = String> {
     runs.iter().map(|(identity, reason)| {
         format!(

@@ -195,7 +195,7 @@ impl GsdReader {
         Ok(names.map(before_zero).collect())
     }
 
-    /// What was logged but time and what belongs to the particles.
+    /// The logged values, except for time and the values of particles.
     fn values(&mut self, frame: usize) -> Result<Vec<(Cow<'static, str>, f64)>, FormatError> {
         let names = self.names.iter().filter_map(|name| name.strip_prefix(LOG));
         let logged = names.filter(|name| *name != TIME && !name.contains('/'));
