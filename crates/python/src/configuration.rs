@@ -366,7 +366,7 @@ impl Configuration {
         self.inner.run.seed
     }
 
-    /// Volume fraction rho = N <d_i^3>/(6 a^2 L) of a straight tube.
+    /// Volume fraction of a straight tube, rho = N d_i^3/(6 a^2 L), d_i^3 averaged.
     ///
     /// Examples
     /// --------
