@@ -31,7 +31,7 @@ pub struct Sphere {
 pub struct Scene {
     /// The spheres, in any order.
     pub spheres: Vec<Sphere>,
-    /// Lines beside the spheres.
+    /// Colour where no sphere is.
     pub background: Colour,
 }
 
