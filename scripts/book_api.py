@@ -44,7 +44,7 @@ WORDS_OF_RUST = words_of_rust()
 def words(node: Named, prefix: str) -> str:
     """The docstring of a definition; of a stub, which has a line at most, that of Rust."""
     found = (ast.get_docstring(node) or "", WORDS_OF_RUST.get(f"{prefix}{node.name}", ""))
-    return inspect.cleandoc(max(found, key=len))
+    return inspect.cleandoc(max(found, key=len)).replace("``", "`")
 
 
 def public(module: Path) -> list[str]:

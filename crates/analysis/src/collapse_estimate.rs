@@ -62,9 +62,9 @@ impl<'a> Collapse<'a> {
     /// A side that the points leave open is infinite.
     ///
     /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of it,
-    /// by random numbers of `seed`. Without a correction the errors hold only where there is none: a small one hides in the
-    /// exponents and fits well. The fit is therefore compared with those that allow for c = -1 and 1. It is not trusted
-    /// where one of them may take a parameter out of its interval of 95 per cent. Look at
+    /// by random numbers of `seed`. Without a correction the errors hold only where the data have none: a small correction shifts
+    /// the exponents, and the fit still looks good. The fit is therefore compared with fits that allow for c = -1 and 1. It
+    /// is not trusted where one of them may take a parameter out of its interval of 95 per cent. Look at
     /// [`doubts`](CollapseEstimate::doubts). Compare Harada, Phys. Rev. E 84, 056704 (2011).
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! Columns of numbers: what is asked of them by several estimators.
+//! Operations on columns of numbers that several estimators share.
 
 /// Distinct values in increasing order; -0 and 0 are one.
 pub(crate) fn distinct(column: &[f64]) -> Vec<f64> {

@@ -8,7 +8,7 @@ use crate::scatter_law::largest_with_scatter;
 use crate::transition::Transition;
 use serde::{Deserialize, Serialize};
 
-/// What the runs say for one law.
+/// Evidence of the runs for one law.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LawEvidence {
     /// The law.

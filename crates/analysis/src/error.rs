@@ -1,4 +1,4 @@
-//! What an estimator refuses, and why.
+//! Errors of the estimators.
 
 /// Error of an estimator: its input cannot be judged.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

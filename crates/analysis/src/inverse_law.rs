@@ -31,9 +31,9 @@ pub struct InverseFit {
 
 /// Straight line `1/y = B (w_c - w)` with w_c free, by weighted least squares.
 ///
-/// What one draws to read alpha = 1 off a figure: a regression of 1/tau on w that ends at w_c. The error of 1/y is
+/// This is the line that one draws to see alpha = 1 in a figure: a regression of 1/tau on w that ends at w_c. The error of 1/y is
 /// error/y^2; above some 20 per cent of y it is no longer normal. The interval of w_c is Fieller's (J. R. Stat. Soc. B
-/// 16, 175 (1954)), which is that of the profile of chi^2. Compare [`fit_law`](crate::fit_law) with `Law::Power`, which
+/// 16, 175 (1954)); the profile of chi^2 gives the same interval. Compare [`fit_law`](crate::fit_law) with `Law::Power`, which
 /// leaves alpha free.
 ///
 /// # Errors

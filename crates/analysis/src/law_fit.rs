@@ -203,7 +203,7 @@ pub struct NearestFit {
 /// Fits a law to the values at the k largest widths, for every k: the exponent against the window.
 ///
 /// From one width more than the law has free parameters (4 with w_c free, 3 with a `known` one) up to all. An exponent
-/// that moves with the window beyond its error is an effective one, that of the range and not of w_c. The fits share
+/// that moves with the window by more than its error is an effective exponent: it describes the window, not w_c. The fits share
 /// their values and do not scatter independently. Windows without a fit are left out.
 ///
 /// # Errors

@@ -141,7 +141,7 @@ impl LawLikelihood {
         self.groups.iter().map(Group::observed).sum()
     }
 
-    /// What is said where the likelihood has no maximum that counts.
+    /// The error where the likelihood has no maximum within the allowed range.
     pub(crate) fn undetermined(&self) -> Error {
         Error::undetermined(self.runs, self.law.parameters_with(self.family))
     }

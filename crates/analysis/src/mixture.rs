@@ -111,7 +111,7 @@ pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<
 ///
 /// `f(x) = p N(x; m_1, s_1) + (1 - p) N(x; m_2, s_2)`,   gain = BIC_1 - BIC_2,   BIC = q ln n - 2 ln L, q = 2 and 5
 ///
-/// Expectation-maximisation from nine splits of the sorted values, the best of which counts; no peak is narrower than 1
+/// The best of nine fits by expectation-maximisation, from nine splits of the sorted values; no peak is narrower than 1
 /// per cent of the deviation of all values. The criterion favours two peaks also for one skew peak: read it beside the
 /// separation and the [`dip_test`](crate::dip_test), which assumes no form. Give one value per run. Sources: Dempster,
 /// Laird & Rubin, J. R. Stat. Soc. B 39, 1 (1977); Schwarz, Ann. Stat. 6, 461 (1978); the separation: Ashman, Bird &

@@ -21,7 +21,7 @@ const TWO_DIGITS: f64 = 1.95;
 /// Errors below this part of their number are rounding only, like none.
 const ROUNDING: f64 = 1e-12;
 
-/// What stands for a number that is not known.
+/// Sign for a number that is not known.
 const MISSING: &str = "–";
 
 /// The number with its error, such as `2.794 ± 0.003`; alone where no error [is known](known_error).

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Fewest runs at a time from which a variance is estimated.
 const LEAST_RUNS: usize = 3;
 
-/// What stands for a run after it was stopped.
+/// The value of a run after it was stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AfterEnd {

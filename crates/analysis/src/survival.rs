@@ -112,7 +112,7 @@ impl Survival {
     ///
     /// d_j transitions at t_j among n_j runs still watched. Greenwood's error is `S sqrt(sum d_j/(n_j (n_j - d_j)))`;
     /// the intervals are those of `ln(-ln S)`, which stay between 0 and 1 and hold from some ten runs on. After the
-    /// last transition of uncensored runs S is 0 with error 0, the interval reaching up to that of the step before.
+    /// last transition of uncensored runs S is 0 with error 0; its interval reaches up to the interval of the step before.
     /// Assumes that a run's end is unrelated to its transition: true of runs of a set length, not of runs that were
     /// ended because they were about to change. Sources: Kaplan & Meier, J. Am. Stat. Assoc. 53, 457 (1958); the
     /// intervals: Kalbfleisch & Prentice, The Statistical Analysis of Failure Time Data (2002), section 1.4.

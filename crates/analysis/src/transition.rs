@@ -120,7 +120,7 @@ pub struct TransitionDetector {
 }
 
 impl TransitionDetector {
-    /// A detector at the start of a run, of which J/Jmax is 0 for [`Direction::Upward`] and 1 for
+    /// A detector at the start of a run. There J/Jmax is 0 for [`Direction::Upward`] and 1 for
     /// [`Direction::Downward`] unless [`starting_at`](Self::starting_at) says otherwise.
     ///
     /// `threshold` of J/Jmax, any finite number: below 0 for back flow; `period_duration` T = lambda/c in the unit of the

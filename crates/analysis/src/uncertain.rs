@@ -26,8 +26,8 @@ impl Interval {
     /// Ends that are open to either side.
     pub(crate) const OPEN: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-    /// Where a function that is at most 0 at `inside` stays so, up to the crossings that are sought in steps from
-    /// `first_step` on as far as `limits`; a side without one ends at that of `open`.
+    /// The interval about `inside` in which a function stays at or below 0. Its ends are the crossings, searched for in
+    /// growing steps from `first_step` on as far as `limits`; a side without a crossing ends at that side of `open`.
     pub(crate) fn around(
         inside: f64,
         outside: impl Fn(f64) -> f64,

@@ -24,7 +24,7 @@ use crate::commands::study::{StudyCommand, WorkArguments, time_span};
     version = concat!(env!("CARGO_PKG_VERSION")),
     propagate_version = true,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 3 a published row is not what its run gives; 129, 130, 138, 143 stopped by a signal, with everything saved (a second signal, a second later, ends at once)."
+    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 3 a run computed again differs from its published row; 129, 130, 138, 143 stopped by a signal, with everything saved (a second signal, a second later, ends at once)."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -35,13 +35,13 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Run one simulation and write its tables and figures.
     Run(RunArguments),
-    /// List runs with what came out of them.
+    /// List runs with their results.
     Runs(RunsArguments),
     /// Draw the figures of runs again, from their saved states; computes nothing.
     Figures(FiguresArguments),
-    /// Say what would run and how long it would take, and warn of what looks doubtful; computes nothing.
+    /// Say what would run, how long it would take and what looks doubtful; tries a few steps, writes nothing.
     Check(CheckArguments),
-    /// Say what to expect of a pump: dimensionless groups, the published runs like it, cost; runs nothing.
+    /// Say what to expect of a pump: dimensionless groups, the published runs like it, cost.
     Design(DesignArguments),
     /// Write the spheres of a run, from its saved state on, for other programs to open.
     Trajectory(TrajectoryArguments),
@@ -273,11 +273,11 @@ pub(crate) struct NewtonianArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Reads the published rows of finished runs, computes a random sample of them again, compares it to the bit, and examines every claim. Called again it goes on where it stopped; runs are shared by --quick, --full and --fresh. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/ and again/. The exit code is 3 where a published row is not what its run gives."
+    after_help = "Reads the published rows of finished runs, computes a random sample of them again, compares it to the bit, and examines every claim. Called again it goes on where it stopped; runs are shared by --quick, --full and --fresh. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/ and again/. The exit code is 3 where a run computed again differs from its published row."
 )]
 pub(crate) struct ReproduceArguments {
-    /// How many published rows to compute again: a part of each study's, such as 1%, or as many as fit into a time, such
-    /// as 90s; 0% is none. The default is 3 minutes, with --full none.
+    /// How many published rows to compute again: a part of the rows of each study, such as 1%, or as many as fit into a
+    /// time, such as 90s. The default is 3 minutes, and 0% with --full.
     #[arg(long, value_name = "PART|TIME", value_parser = extent, conflicts_with_all = ["quick", "fresh"])]
     pub(crate) check: Option<Extent>,
     /// Seed of the random sample, to draw the same rows again; the default is a new one, which is printed.

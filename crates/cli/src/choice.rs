@@ -64,7 +64,7 @@ pub const FIELDS: &[Choice<Field>] = &[
     ("pressure", Pressure, BY_PRESSURE),
 ];
 const BY_VELOCITY: &str = "v_z/c: blue against the wave, white at rest, red along it";
-const BY_DISPLACEMENT: &str = "way along the wave since the first frame, in wavelengths";
+const BY_DISPLACEMENT: &str = "displacement along the wave since the first frame, in wavelengths";
 const BY_ROTATION: &str = "speed of the surface by rotation, in c";
 const BY_PRESSURE: &str = "mean normal stress by the forces of contacts; not from a trajectory";
 
@@ -111,7 +111,7 @@ pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
         .map(|name| value_of(choices, &name).expect("only known names are parsed"))
 }
 
-/// Any text, for which shells offer these names; what is none of them is refused by who looks it up.
+/// Any text. Shells offer these names; whoever looks the name up refuses an unknown one.
 #[derive(Clone)]
 pub(crate) struct Offered(pub(crate) Vec<&'static str>);
 

@@ -53,7 +53,7 @@ pub(crate) enum Failure {
     /// Claims, textbook cases or the report of them.
     #[error(transparent)]
     Claim(ReproduceError),
-    /// Published rows that are not what their runs give.
+    /// Published rows that differ from their runs computed again.
     #[error("{message}")]
     OtherRows { message: String },
     /// The viewer.
@@ -71,7 +71,7 @@ pub(crate) enum Failure {
 const BAD_INPUT: u8 = 2;
 /// Exit code for work that failed.
 const FAILED: u8 = 1;
-/// Exit code for a published row that is not what its run gives.
+/// Exit code for a published row that differs from its run computed again.
 const OTHER_ROWS: u8 = 3;
 
 impl From<ReproduceError> for Failure {

@@ -1,7 +1,7 @@
 //! `peristalsis`: grains in a peristaltic tube, from the command line; as a library, for the program and for Python's.
 //!
 //! Parses, calls, reports: this is the only crate that prints or exits. Results go to standard output, everything else
-//! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 3 a published row is not what its run gives, 129,
+//! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 3 a run computed again differs from its published row, 129,
 //! 130, 138 and 143 stopped by a signal.
 
 #![forbid(unsafe_code)]

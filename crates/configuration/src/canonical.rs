@@ -12,8 +12,7 @@ use crate::grains::Body;
 use crate::keys::{ALTERNATIVES, RINGS};
 use crate::schedule::{Schedule, ScheduleForm};
 
-/// Tables and keys that do not determine the trajectory: how long it is followed, what is measured, in which units it is
-/// told.
+/// Tables and keys that do not change the trajectory: its length, the measurements, the units of the output.
 const EXTENT: [&str; 4] = ["run.periods", "run.duration", "observe", "units"];
 
 /// A key with its resolved value.
@@ -63,14 +62,14 @@ impl Configuration {
     /// SHA-256 of everything that determines the trajectory: grains, gravity, contact, tube, drive, wall, initial state, time
     /// step, integrator, kernel, skin of the neighbour search (the last two by rounding only) and seed.
     ///
-    /// The same for configurations that differ in the length of the run, in what is measured, in the order of keys, or in
-    /// the alternative given where it resolves to the same bits.
+    /// Two configurations have the same hash if they differ only in the length of the run, in the measurements, in the
+    /// order of keys, or in the choice among alternative keys that resolve to the same bits.
     pub fn physics_hash(&self) -> [u8; 32] {
         self.hash("peristalsis physics 1\n", Entry::determines_the_trajectory)
     }
 
-    /// SHA-256 of every resolved value: that of [`Configuration::physics_hash`] with the length of the run and what is
-    /// measured.
+    /// SHA-256 of every resolved value: all that [`Configuration::physics_hash`] covers, the length of the run, and the
+    /// measurements.
     pub fn run_hash(&self) -> [u8; 32] {
         self.hash("peristalsis run 1\n", |_| true)
     }

@@ -65,7 +65,7 @@ pub struct Tube {
     /// Number of waves in the tube; its length is L = waves * wavelength.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub waves: u32,
-    /// What the ends of the tube are.
+    /// How the tube ends.
     #[serde(default, skip_serializing_if = "Ends::is_periodic")]
     pub ends: Ends,
     /// How the wall spheres stand.
@@ -218,7 +218,7 @@ impl Drive {
     }
 }
 
-/// What of the wall is prescribed: its radius (strain) or the radial force on its spheres (stress).
+/// Whether the radius of the wall is prescribed (strain) or the radial force on its spheres (stress).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "control", rename_all = "snake_case")]
 pub enum Control {
@@ -343,8 +343,8 @@ pub struct Observe {
     /// samples every two neighbours become one, so that memory is bounded.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub samples_per_period: u32,
-    /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of a bin: it grows with their
-    /// number.
+    /// Bins of the profiles over one wavelength. The largest pressure on the wall is the largest of any bin: it grows
+    /// with the number of bins.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 100_000))]
     pub profile_bins: u32,
     /// Part of the run, at its end, over which late means and profiles are taken.

@@ -168,7 +168,7 @@ impl Contract<'_> {
         self.refuse(kind, path, place, message, allowed(schema));
     }
 
-    /// Notes a problem with a key at one place, of which something is said.
+    /// Notes a problem with a key at one place of the text.
     fn refuse(
         &mut self,
         kind: ProblemKind,
@@ -217,7 +217,7 @@ fn names(schema: &Value) -> Vec<&str> {
     texts(&schema["enum"]).chain(by_const).collect()
 }
 
-/// What a key allows, in words, with its description.
+/// The allowed values of a key, in words, with its description.
 pub(crate) fn allowed(schema: &Value) -> String {
     let kind = match kind_in_words(schema) {
         kind if kind.is_empty() => kind,

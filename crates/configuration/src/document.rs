@@ -100,7 +100,7 @@ pub(crate) fn parse_override(text: &str, problems: &mut Problems) -> Table {
     })
 }
 
-/// The table of one key, or why the text is none.
+/// The table with this one key, or the reason why the text is not KEY=VALUE.
 fn read_override(source: &Arc<Source>) -> Result<Table, String> {
     let text = &*source.text;
     let Some((key, value)) = text.split_once('=') else {

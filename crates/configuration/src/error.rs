@@ -1,4 +1,4 @@
-//! What is wrong with a configuration: message, key, what is allowed, and where it was written.
+//! Errors of a configuration: message, key, allowed values, and the place in the text.
 
 use std::fmt;
 use std::ops::Range;
@@ -84,13 +84,13 @@ pub enum ProblemKind {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", paragraph(self))]
 pub struct Problem {
-    /// What sort of problem.
+    /// Kind of the problem.
     pub kind: ProblemKind,
-    /// What is wrong, in one sentence.
+    /// The fault, in one sentence.
     pub message: String,
     /// Full name of the key, such as `drive.width`; of several the first.
     pub key: Option<String>,
-    /// What is allowed, or how to mend it.
+    /// The allowed values, or the way to mend the fault.
     pub help: Option<String>,
     /// Where it was written, the main place first; empty if nowhere (a missing key).
     pub labels: Vec<Label>,
@@ -107,7 +107,7 @@ pub struct Label {
     pub source_text: Arc<str>,
     /// Bytes of `source_text`; always within it and on character boundaries.
     pub span: Range<usize>,
-    /// What to say of this place.
+    /// The label of this place.
     pub message: String,
 }
 

@@ -91,7 +91,7 @@ impl Grains {
     }
 }
 
-/// What acts on every grain, wherever it is.
+/// Forces on all grains.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Body {

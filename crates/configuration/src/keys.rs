@@ -26,17 +26,17 @@ pub(crate) const RATES: &[&str] = &[
 ];
 /// Keys that give the length of the run.
 pub(crate) const LENGTHS: &[&str] = &["run.periods", "run.duration"];
-/// Keys of which exactly one is given; a choice in a higher layer replaces the one below.
+/// Lists of keys; a configuration gives exactly one key of each list. A higher layer replaces the choice of a lower one.
 pub(crate) const ALTERNATIVES: [&[&str]; 4] =
     [NUMBERS, &["drive.width", "drive.amplitude"], RATES, LENGTHS];
 
-/// Keys of which at most one is given: the damping of each law, first, and what stands for it.
+/// Lists of keys; a configuration gives at most one key of each list: the damping of a law, or the restitution instead.
 pub(crate) const DAMPINGS: [&[&str]; 2] = [
     &["contact.normal_damping", "contact.restitution"],
     &["contact.dissipation_time", "contact.restitution"],
 ];
 
-/// The lattice of a wall of spheres, which a smooth wall does without.
+/// Keys of the lattice of a wall of spheres; a smooth wall has none of them.
 pub(crate) const RINGS: [&str; 2] = ["tube.spheres_per_ring", "tube.rings_per_wave"];
 
 /// Where the wall spheres of arrangement = "file" come from; at most one is given.
@@ -44,22 +44,22 @@ const SPHERES: &[&str] = &["tube.file", "tube.places"];
 
 /// Where the points of waveform = "table" come from; at most one is given.
 const POINTS: &[&str] = &["drive.table", "drive.phases"];
-/// Keys that give gravity, of which at most one is given.
+/// Keys of gravity: at most one is given.
 const GRAVITIES: &[&str] = &["body.gravity", "units.acceleration"];
 
-/// Keys of forms of sizes, of which at most one is given.
+/// Keys of distributions of sizes: at most one of each list is given.
 const SIZES: [&[&str]; 2] = [
     &["grains.large_fraction", "grains.large_volume_fraction"],
     &["grains.file", "grains.diameters"],
 ];
 
-/// Keys that give cohesion of either kind, of which at most one is given.
+/// Keys of either kind of cohesion: at most one of each list is given.
 const COHESIONS: [&[&str]; 2] = [
     &["contact.cohesion_force", "units.cohesion_force"],
     &["contact.surface_energy", "units.surface_energy"],
 ];
 
-/// Keys that give the rate of the inlet, of which at most one is given.
+/// Keys of the rate of the inlet: at most one is given.
 const FEEDS: &[&str] = &["inlet.feed_rate", "units.feed_rate"];
 
 /// Keys that only an open tube has.
@@ -106,7 +106,7 @@ pub(crate) struct Keys {
     pub(crate) units: UnitsKeys,
 }
 
-/// The tube, and where its spheres are read.
+/// The tube and the places of its wall spheres.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 pub(crate) struct TubeKeys {
     #[serde(flatten)]
@@ -130,7 +130,7 @@ pub(crate) struct GrainsKeys {
     /// Number density n = N d*^3/(pi a^2 L), d* the largest grain diameter; N is rounded to the nearest whole number.
     #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 10))]
     pub(crate) number_density: Option<f64>,
-    /// Part of the grains' volume that those of diameter_max have, instead of large_fraction.
+    /// Part of the volume of all grains that the grains of diameter_max have, instead of large_fraction.
     #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1))]
     pub(crate) large_volume_fraction: Option<f64>,
     /// Table of the diameters under sizes = "table", instead of diameters and fractions: CSV with the columns diameter and
@@ -307,7 +307,7 @@ pub(crate) struct UnitsKeys {
     #[schemars(extend("x-unit" = "N", "minimum" = 0, "maximum" = 1e9))]
     pub(crate) cohesion_force: Option<f64>,
     /// Surface energy gamma of JKR cohesion, half the work of adhesion, instead of contact.surface_energy. Dry glass has some
-    /// 0.05; grains that are computed softer than they are cling more.
+    /// 0.05; grains that are softer in the computation than in reality cling more.
     #[schemars(extend("x-unit" = "J m^-2", "minimum" = 0, "maximum" = 1e6))]
     pub(crate) surface_energy: Option<f64>,
     /// Mass that the inlet of an open tube takes in an hour, instead of inlet.feed_rate.

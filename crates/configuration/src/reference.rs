@@ -5,8 +5,8 @@ use serde_json::Value;
 use crate::presets::PRESETS;
 use crate::schema::joined;
 
-/// All keys of a [schema](crate::schema) as Markdown: a section a table, a row a key, with what it means, what is
-/// allowed, and its default.
+/// All keys of a [schema](crate::schema) as Markdown: one section per table, one row per key, with its meaning, the
+/// allowed values and the default.
 ///
 /// `leave_out` names tables that are described elsewhere. Rows are in the order of their names.
 pub fn reference(schema: &Value, leave_out: &[&str]) -> String {

@@ -160,7 +160,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     }
 
     /// Whether the list holds all admitted pairs of so many spheres that are now closer than (d_i + d_j)/2 + `skin`;
-    /// `drift` is that of all.
+    /// `drift` is the drift of all spheres.
     pub(crate) fn covers(&self, spheres: usize, drift: Drift, skin: f64) -> bool {
         self.origin.len() == spheres && drift.approach() + skin <= self.skin
     }

@@ -80,7 +80,7 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     found
 }
 
-/// What the law answers for two spheres; `None` where it does not act.
+/// The response of the law to two spheres; `None` where it does not act.
 fn answered<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     contact: &Contact,

@@ -141,7 +141,7 @@ fn touch_immobile<N: NormalLaw, T: TangentialLaw>(
     }
 }
 
-/// What the law answers for a contact of a grain.
+/// The response of the law to a contact of a grain.
 fn answered<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,
@@ -174,7 +174,7 @@ fn following(contact: &Contact, acceleration: DVec3, time_step: f64) -> Contact 
     }
 }
 
-/// What sliding takes in the step that leads to `next`, over its length; 0 without friction.
+/// Mean power lost to sliding in the step that leads to `next`; 0 without friction.
 ///
 /// The bound on the spring changes with the normal force meanwhile: -f_t . v_t alone would count what the spring takes up,
 /// and gives back later.

@@ -1,4 +1,4 @@
-//! What can be wrong with the columns of a figure.
+//! Errors in the columns of a figure.
 
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! What the lines and marks of a figure mean, written below the frame or in a free part of it.
+//! The legend of a figure, below the frame or in a free part of it.
 
 use crate::colour::{BLACK, Colour};
 use crate::drawing::{Anchor, Drawing, Fill, Stroke};

@@ -12,7 +12,7 @@ use crate::text::{DIGIT_HEIGHT, Text};
 /// bar of colours below. No pixel of the picture is hidden, and none is changed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PictureFigure<'a> {
-    /// What is seen, in markup: the title of the SVG, not drawn.
+    /// Description of the picture, in markup: the title of the SVG, not drawn.
     pub title: &'a str,
     /// Red, green and blue, row by row from the top.
     pub pixels: &'a [u8],
@@ -37,7 +37,7 @@ pub struct PictureFigure<'a> {
 pub struct PlaceMark {
     /// Part of the width, from the left.
     pub place: f64,
-    /// What is there, in markup.
+    /// Text of the mark, in markup.
     pub label: &'static str,
 }
 
@@ -67,7 +67,7 @@ impl Paper {
         page.srgb()
     }
 
-    /// Colours of the page, of what is written on it, and of what is less important.
+    /// Colours of the page, of its text, and of less important text.
     fn colours(self) -> [Colour; 3] {
         match self {
             Self::Light => [WHITE, BLACK, Colour::new(90, 90, 90)],

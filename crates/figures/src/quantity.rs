@@ -68,7 +68,7 @@ impl Units {
         }
     }
 
-    /// What makes a number of a force, in markup.
+    /// Divisor that makes a force a pure number, in markup.
     fn per_force(self) -> &'static str {
         match self {
             Self::Linear => "/*kd*",

@@ -69,7 +69,7 @@ pub struct SnapshotFigure<'a> {
     pub title: &'a str,
     /// The snapshots from top to bottom.
     pub snapshots: &'a [Snapshot<'a>],
-    /// The speed over which velocities are told, in markup: that of the wave, *c*, where it moves.
+    /// Unit of the velocities, in markup: the speed *c* of the wave where it moves.
     pub speed: &'a str,
     /// Width of the figure.
     pub width: Width,

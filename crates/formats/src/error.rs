@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::value_kind::ValueKind;
 
-/// What can go wrong between a value in memory and its bytes on disk.
+/// Errors between a value in memory and its bytes on disk.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FormatError {
@@ -134,7 +134,7 @@ pub enum FormatError {
     },
     /// The state was computed with another version of the physics, so that it cannot go on to the same bits.
     #[error(
-        "it was computed with version {found} of the physics; this program computes version {computed}, which comes to \
+        "it was computed with version {found} of the physics; this program computes version {computed}, which gives \
          other results"
     )]
     OtherPhysicsVersion {

@@ -38,7 +38,7 @@ use crate::error::FormatError;
 use crate::table::{COLUMNS_KEY, Column, Table, Values, is_reserved};
 use crate::value_kind::ValueKind;
 
-/// What stands in bytes 4 to 16 of a sealed file; the checksum follows in bytes 16 to 20.
+/// Bytes 4 to 16 of a sealed file; the checksum follows in bytes 16 to 20.
 const SEAL_SIGNATURE: [u8; 12] = *b"\x89peristalsis";
 const SEAL_SIGNATURE_RANGE: Range<usize> = 4..16;
 const SEAL_CHECKSUM_RANGE: Range<usize> = 16..20;

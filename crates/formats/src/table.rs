@@ -101,7 +101,7 @@ pub struct Column {
     pub name: String,
     /// Unit of the values, such as `d t^-1`; empty for counts, ratios and text.
     pub unit: String,
-    /// What the values mean, in one line.
+    /// Meaning of the values, in one line.
     pub description: String,
     /// The values, one a row.
     pub values: Values,

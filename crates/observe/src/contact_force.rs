@@ -76,7 +76,7 @@ impl ContactForces {
         }
     }
 
-    /// The records from the time `start` \[t\] on; where there are none, the last one before.
+    /// The records from the time `start` \[t\] on, or else the last record before it.
     pub fn late(&self, start: f64) -> &[ContactForce] {
         let looks = self.looks.rows();
         let early = looks.partition_point(|look| look.time < start);

@@ -1,4 +1,4 @@
-//! What looks wrong with an elastic wall: buckled, collapsed or blown up.
+//! Faults of an elastic wall: buckled, collapsed or blown up.
 
 use peristalsis_engine::Simulation;
 
@@ -41,7 +41,7 @@ pub struct WallFault {
 }
 
 impl WallFault {
-    /// What happened, where, when, and what probably causes it.
+    /// The fault, its place and time, and its probable cause.
     pub fn in_words(&self) -> String {
         let Self {
             time,

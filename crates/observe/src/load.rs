@@ -1,4 +1,4 @@
-//! What the grains bear: the forces on them, and the stress that follows from them.
+//! The load on the grains: forces, and the stress that follows from them.
 
 use glam::{DMat3, DVec3};
 use peristalsis_engine::{Bodies, Ends, Simulation, Touching};

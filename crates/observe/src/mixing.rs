@@ -14,8 +14,8 @@ const IN_A_CELL: usize = 10;
 /// Lacey's index of mixing of two kinds of grains, by cells along the tube and by cells from its axis outward.
 ///
 /// M = (s_0^2 - s^2)/(s_0^2 - s_r^2), after Lacey, J. Appl. Chem. 4, 257 (1954). s^2 is the variance over the cells of the
-/// part p_c of one kind, about p, its part of all; s_0^2 = p (1 - p) is that of kinds that lie apart, and
-/// s_r^2 = s_0^2 (C - 1)/(N - 1) that of N grains thrown into C cells at random. M is 0 where the kinds lie apart. Over
+/// part p_c of one kind, about p, its part of all. It is s_0^2 = p (1 - p) where the kinds lie apart, so that M = 0, and
+/// on average s_r^2 = s_0^2 (C - 1)/(N - 1) for N grains thrown into C cells at random. Over
 /// random arrangements its mean is 1 and its standard deviation (2 (C - 1))^(1/2)/(N - C).
 ///
 /// The cells hold equal numbers of grains, N/C, in the order of a coordinate: 10 cells, fewer where they would hold less than 10

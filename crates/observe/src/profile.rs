@@ -94,7 +94,7 @@ impl Sums {
         self.diameter += diameter;
     }
 
-    /// Adds what is seen of the tube at `places` places that are alike.
+    /// Adds the tube at `places` places that are alike.
     #[inline]
     fn look_at(&mut self, slice: Slice, places: f64) {
         self.see(places * slice.mean, (slice.least, slice.largest), places);
@@ -188,7 +188,7 @@ pub struct ProfileBin {
     /// Pressure on the wall: radial force per area 2 pi R dz, outward \[m/(d t^2)\], with its error.
     pub wall_pressure: (f64, f64),
     /// Shear on the wall along the wave, with its error \[m/(d t^2)\]: the axial force on the wall per area 2 pi R dz
-    /// without that of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.
+    /// without the force of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.
     pub wall_shear: (f64, f64),
     /// Power that grains lose where they slide on the wall, per area 2 pi R dz, with its error \[m/t^3\].
     pub wall_wear: (f64, f64),

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Rows that a series has at most: those of 13,000 periods of 20 samples. Beyond, neighbours become one.
 pub const MOST_ROWS: usize = 1 << 18;
 
-/// What can stand for several entries of a series that follow each other.
+/// An entry of a series that can replace several neighbouring entries.
 pub trait Join {
     /// Takes in what came next: `own` entries are here, `others` in `next`.
     fn join(&mut self, own: u64, next: &Self, others: u64);

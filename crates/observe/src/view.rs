@@ -76,8 +76,8 @@ fn has_escaped(bodies: &Bodies, grain: usize, shape: &TubeShape) -> bool {
     beyond(shape.least_radius() + half) && beyond(shape.radius(position.z) + half)
 }
 
-/// The greatest whole number that is not above x, for what is below 2^63 in size: by truncation, for rounding is a call of
-/// the library on the plainest processors.
+/// The greatest whole number that is not above x, for |x| < 2^63. It truncates, since rounding is a call of the library on
+/// processors without an instruction for it.
 #[inline]
 pub(crate) fn floor(x: f64) -> f64 {
     let whole = x as i64 as f64;

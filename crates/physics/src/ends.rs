@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// What the ends of the tube are.
+/// How the tube ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Ends {
@@ -39,7 +39,7 @@ pub struct Inlet {
     /// place. Default: the whole tube.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e9, "default" = null))]
     pub head: f64,
-    /// Length of the stretch in which grains are put in, from the far end of the head on. Default: 3 largest diameters.
+    /// Length of the stretch in which grains are put in, at the end of the head that is farther from the outlet. Default: 3 largest diameters.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e9, "default" = null))]
     pub length: f64,
     /// Grains put in per time, as far as there is place for them. Default: as many as there is place for.

@@ -36,9 +36,9 @@ pub enum Integrator {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Kernel {
-    /// The fastest for the case at hand; the same bits on every machine.
+    /// The fastest kernel that can compute the tube; the same bits on every machine.
     #[default]
     Fast,
-    /// The plain one that the fast ones are tested against; equal up to rounding.
+    /// The reference kernel, with which the fast kernels agree up to rounding.
     Reference,
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SizeForm {
-    /// All diameters between diameter_min and diameter_max alike.
+    /// All diameters between diameter_min and diameter_max are equally likely.
     #[default]
     Uniform,
     /// ln d is normal around ln diameter_median with the standard deviation diameter_spread, cut at diameter_min and

@@ -52,7 +52,7 @@ impl<'py> FromPyObject<'_, 'py> for Scheme<'py> {
     }
 }
 
-/// What a scaling of the caller's answered.
+/// The result of a scaling function of the caller.
 fn three_numbers(answer: &Bound<'_, PyAny>) -> PyResult<[f64; 3]> {
     let numbers = answer.try_iter().and_then(|items| {
         let numbers = items.map(|item| item?.extract());

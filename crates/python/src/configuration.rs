@@ -33,7 +33,7 @@ use crate::value::settings;
 /// Raises
 /// ------
 /// ConfigurationError
-///     Where a key or value cannot be: the key, where it was given, and what is allowed.
+///     Where a key is unknown or a value not allowed: the key, where it was given, and what is allowed.
 ///
 /// Examples
 /// --------
@@ -187,7 +187,7 @@ impl Configuration {
     /// Raises
     /// ------
     /// ConfigurationError
-    ///     Where a key or value cannot be.
+    ///     Where a key is unknown or a value not allowed.
     ///
     /// Examples
     /// --------
@@ -366,7 +366,7 @@ impl Configuration {
         self.inner.run.seed
     }
 
-    /// Volume fraction rho = N/(6 a^2 L) of a straight tube, of grains of diameter 1.
+    /// Volume fraction of a straight tube, rho = N d_i^3/(6 a^2 L), d_i^3 averaged.
     ///
     /// Examples
     /// --------

@@ -12,7 +12,7 @@ create_exception!(
     peristalsis,
     ConfigurationError,
     PyValueError,
-    r#"A configuration that cannot be: the key, where it was given, and what is allowed.
+    r#"A configuration that is not possible: the key, where it was given, and what is allowed.
 
 Examples
 --------
@@ -44,7 +44,7 @@ create_exception!(
     PyRuntimeError,
     r#"A sphere moved by more than half a diameter in one step; the simulation goes no further.
 
-Its state is that of the step that failed, and its summary has the status ``diverged`` and this error as its ``message``.
+Its state is the state after the step that failed, and its summary has the status ``diverged`` and this error as its ``message``.
 
 Examples
 --------
@@ -86,7 +86,7 @@ create_exception!(
     peristalsis,
     AnalysisError,
     PyValueError,
-    r#"Data that an estimator can say nothing about.
+    r#"Data that do not allow an estimate.
 
 Examples
 --------
@@ -98,7 +98,7 @@ Examples
 too few samples"#
 );
 
-/// A configuration that cannot be; an override stands in the message as ``key=value``, without the command line's flag.
+/// A configuration that is not possible; an override stands in the message as ``key=value``, without the command line's flag.
 pub(crate) fn of_configuration(error: peristalsis_configuration::ConfigurationError) -> PyErr {
     ConfigurationError::new_err(error.to_string().replace("--set ", ""))
 }
@@ -110,7 +110,7 @@ pub(crate) fn in_words(error: &RunError) -> String {
     format!("{error}{help}")
 }
 
-/// A run that cannot be, or failed.
+/// A run that is not possible, or failed.
 pub(crate) fn of_run(error: RunError) -> PyErr {
     let text = in_words(&error);
     match error {
@@ -142,7 +142,7 @@ pub(crate) fn of_run(error: RunError) -> PyErr {
     }
 }
 
-/// A study that cannot be, or failed.
+/// A study that is not possible, or failed.
 pub(crate) fn of_study(error: StudyError) -> PyErr {
     let text = error.to_string();
     match error {

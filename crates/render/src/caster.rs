@@ -51,7 +51,7 @@ pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
     Ok(Picture::new(width, height, rows.concat()))
 }
 
-/// The spheres of a finish that are in the picture or hide light from what is.
+/// The spheres of a finish that are in the picture or cast a shadow into it.
 fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Disc> {
     let half = 0.5 / view.scale as f32 * Vec3::new(view.width as f32, view.height as f32, 0.0);
     let is_sound = |it: &&Sphere| it.finish == finish && it.radius > 0.0 && it.centre.is_finite();
@@ -185,7 +185,7 @@ fn meet(row: &Row, height: f32, spheres: &[Disc], numbers: &[usize], nearest: &m
     }
 }
 
-/// What each ray of a pixel sees; the light on a sphere is worked out once for all its rays.
+/// The colour of each ray of a pixel; the light on a sphere is computed once for all its rays.
 fn behind(
     met: &[Meeting; RAYS_A_PIXEL],
     opaque: &[Disc],

@@ -1,4 +1,4 @@
-//! What can go wrong between spheres and a picture.
+//! Errors between spheres and a picture.
 
 /// Errors of a picture.
 #[derive(Debug, thiserror::Error)]

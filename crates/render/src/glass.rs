@@ -1,10 +1,10 @@
-//! What is seen through glass.
+//! Spheres seen through glass.
 
 use glam::Vec3;
 
 use crate::colour::Colour;
 
-/// How much of what is behind a wall of glass it hides where it faces the eye, and more at its rim.
+/// Opacity of a wall of glass where it faces the eye, and at its rim.
 const VEIL: f32 = 0.02;
 const RIM: f32 = 0.60;
 /// The mirrored lamp.

@@ -1,4 +1,4 @@
-//! What is seen, and from where.
+//! A scene and the view of it.
 
 use glam::{DVec3, Vec3};
 
@@ -31,7 +31,7 @@ pub struct Sphere {
 pub struct Scene {
     /// The spheres, in any order.
     pub spheres: Vec<Sphere>,
-    /// What is seen beside them.
+    /// Colour where no sphere is.
     pub background: Colour,
 }
 

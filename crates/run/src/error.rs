@@ -1,4 +1,4 @@
-//! What can go wrong in a run.
+//! Errors of a run.
 
 use std::path::{Path, PathBuf};
 
@@ -157,7 +157,7 @@ impl RunError {
         matches!(self, Self::Engine(EngineError::Stopped))
     }
 
-    /// What to do about a run that diverged; `None` for other errors.
+    /// Advice for a run that diverged; `None` for other errors.
     pub fn against_divergence(&self) -> Option<&'static str> {
         match self {
             Self::Engine(EngineError::Diverged { grain, grains, .. }) if grain >= grains => Some(

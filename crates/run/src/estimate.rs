@@ -77,7 +77,7 @@ pub struct Estimate {
     pub threads: usize,
     /// The kernel that computes the forces.
     pub kernel: Kernel,
-    /// What the reference kernel alone computes of this run, where it needs that kernel.
+    /// The reason why this run needs the reference kernel, if it does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_only: Option<&'static str>,
     /// Bytes of memory, about.
@@ -208,7 +208,7 @@ struct Trial {
 }
 
 impl Trial {
-    /// What was seen in the trial that the configuration does not say by itself.
+    /// Warnings of the trial that do not follow from the configuration alone.
     fn warnings(&self, configuration: &Configuration) -> Vec<Warning> {
         if !self.is_same_tube {
             return Vec::new();
@@ -229,8 +229,8 @@ fn trial_steps(configuration: &Configuration) -> u64 {
     steps.clamp(LEAST_STEPS, configuration.run.steps().max(LEAST_STEPS))
 }
 
-/// A tube of fewer grains like that of a configuration, how many times more that has, and whether it is the same tube but
-/// for its length.
+/// A tube like the configured one with fewer grains, the ratio of their numbers of grains, and whether the two tubes differ
+/// in length alone.
 fn smaller(configuration: &Configuration) -> (Configuration, f64, bool) {
     let mut trial = configuration.clone();
     let mut scale = 1.0;

@@ -23,7 +23,7 @@ const PROFILE: &str = "profile.parquet";
 const WAVES: &str = "waves.parquet";
 const TRANSIT: &str = "transit.parquet";
 const STATE: &str = "state.checkpoint";
-/// What a run may leave besides its figures and trajectories.
+/// Files that a run may leave besides its figures and trajectories.
 const FILES: [&str; 8] = [
     CONFIGURATION,
     SUMMARY,
@@ -326,8 +326,8 @@ pub fn read_state(path: &Path) -> Result<Run, RunError> {
 /// Writes the state of a run to a file, whole or not at all.
 ///
 /// # Errors
-/// [`RunError::Format`] where it cannot be written, [`RunError::AtWork`] where it is that of a run on which another program
-/// works; an older file stays.
+/// [`RunError::Format`] where it cannot be written, [`RunError::AtWork`] where the file belongs to a run on which another
+/// program works; an older file stays.
 pub fn write_state(run: &Run, path: &Path) -> Result<(), RunError> {
     let folder = path.parent().map(RunFolder::named);
     let is_of = |folder: &RunFolder| {

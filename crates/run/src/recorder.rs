@@ -225,7 +225,7 @@ impl Recorder {
         &self.contact_forces
     }
 
-    /// What went wrong with an elastic wall, the first of each kind.
+    /// Faults of an elastic wall, the first of each kind.
     pub(crate) fn wall_faults(&self) -> &[WallFault] {
         &self.wall_faults
     }

@@ -23,7 +23,7 @@ pub use self::mark::Mark;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
 const STATE_LAYOUT: u32 = 15;
-/// Steps between two looks at how grains turn, of which a contact takes tens.
+/// Steps between two updates of the orientations of grains. A contact takes tens of steps.
 const STEPS_PER_TURN: u64 = 10;
 
 /// A simulation together with what has been measured of it.
@@ -369,7 +369,7 @@ impl Run {
     }
 }
 
-/// What a checkpoint of a run says of itself.
+/// Header of the checkpoint of a run.
 fn identity(physics_hash: [u8; 32]) -> CheckpointIdentity {
     CheckpointIdentity {
         kind: *b"run     ",

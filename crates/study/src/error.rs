@@ -1,4 +1,4 @@
-//! What can go wrong with a study and its store.
+//! Errors of a study and its store.
 
 use std::path::PathBuf;
 

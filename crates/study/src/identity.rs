@@ -52,8 +52,8 @@ pub(crate) fn column_names() -> Vec<&'static str> {
 
 /// Identity of a run: the first 128 bits of a SHA-256 of all that determines its products.
 ///
-/// That is the resolved configuration without its seed, [`PHYSICS_VERSION`], the rule by which it may stop early, what is
-/// kept of it, and the number of the replicate. It knows nothing of the study: a point that two studies share is the
+/// These are the resolved configuration without its seed, [`PHYSICS_VERSION`], the rule by which the run may stop early, the
+/// files that are kept of it, and the number of the replicate. The identity does not depend on the study: a point that two studies share is the
 /// same run, and a point that is added changes no other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Identity([u8; 16]);

@@ -12,7 +12,7 @@ use crate::specification::{Specification, neat, number};
 /// Axis along which a change is looked for where the study does not refine one.
 const USUAL_KEY: &str = "drive.width";
 
-/// What a run that has ended says of its point.
+/// Outcome of a run that has ended, for its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finding {
     /// The flow changed its kind.

@@ -79,13 +79,13 @@ impl Course {
         self.mark(run);
     }
 
-    /// What is to be done again at the present step.
+    /// The next turn, if it has to be repeated at the present step.
     pub(crate) fn due(&mut self, run: &Run) -> Option<Turn> {
         let step = run.simulation().step();
         self.ahead.pop_front_if(|turn| turn.step <= step)
     }
 
-    /// Steps up to what is to be done again next, at most `most`.
+    /// Steps to the next turn that has to be repeated, at most `most`.
     pub(crate) fn steps_to_next(&self, run: &Run, most: u64) -> u64 {
         let step = run.simulation().step();
         self.ahead

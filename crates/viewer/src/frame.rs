@@ -57,7 +57,7 @@ pub(crate) struct Head {
     pub(crate) rows: Vec<Row>,
     /// The last sample.
     pub(crate) sample: Option<Shown>,
-    /// What is doubtful of the run so far; of a recording, of the whole run.
+    /// Warnings about the run so far; about the whole run if it is a recording.
     pub(crate) warnings: Vec<Warning>,
 }
 

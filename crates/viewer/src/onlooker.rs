@@ -6,7 +6,7 @@ use crate::frame::{Head, contacts_of, of_run};
 use crate::timeline::{Driven, rows, thin};
 use crate::welcome::Welcome;
 
-/// What a page has been told of a run that somebody else advances and steers.
+/// The side of a page that shows a run which somebody else advances and steers.
 #[derive(Debug, Default)]
 pub struct Onlooker {
     /// Whether frames hold the contacts of the grains.
@@ -18,7 +18,7 @@ pub struct Onlooker {
 }
 
 impl Onlooker {
-    /// The first message to the page, in JSON. Friction has no slider: it is none of the drive.
+    /// The first message to the page, in JSON. Friction has no slider, since it does not belong to the drive.
     pub fn welcome(&mut self, run: &Run, title: &str) -> String {
         let (configuration, simulation) = (run.configuration(), run.simulation());
         let grains = simulation.bodies().grains;

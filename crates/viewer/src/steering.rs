@@ -70,7 +70,7 @@ fn is_on_its_way(run: &Run, parameter: Steered) -> bool {
     scheduled(parameter).is_some_and(|it| !run.is_at_rest(it))
 }
 
-/// What of the drive a slider leads; friction is none of it.
+/// The parameter of the drive that a slider changes; `None` for friction, which no schedule changes.
 fn scheduled(parameter: Steered) -> Option<ScheduledParameter> {
     match parameter {
         Steered::Width => Some(ScheduledParameter::Width),

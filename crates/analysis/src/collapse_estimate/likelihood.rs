@@ -79,7 +79,7 @@ impl<'a> Likelihood<'a> {
         Self::new(self.collapse, self.steps, Some(power), self.known).ok()
     }
 
-    /// Parameters of the scaling of which nothing is known from elsewhere.
+    /// Number of parameters of the scaling that the fit has to determine alone.
     pub(super) fn unknown(&self) -> usize {
         (self.steps.len() - 1).saturating_sub(self.known.len())
     }
@@ -128,8 +128,8 @@ impl<'a> Likelihood<'a> {
         (curve.squares + LOST * LOST * lost as f64) / self.degrees_of_freedom()
     }
 
-    /// -2 ln likelihood, with errors stretched by the best factor of 1 or more and what is known of the parameters from
-    /// elsewhere; infinite where too few points overlap.
+    /// -2 ln likelihood, with errors stretched by the best factor of 1 or more, and with the estimates of parameters that
+    /// were given; infinite where too few points overlap.
     pub(super) fn value(&self, parameters: &[f64]) -> f64 {
         let Some((curve, lost)) = self.curve(parameters) else {
             return f64::INFINITY;

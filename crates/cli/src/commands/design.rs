@@ -19,7 +19,7 @@ use crate::stop::Stop;
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "FILE gives grain, tube and drive in SI (--keys lists the keys), or is a configuration. The report names what lies outside the published runs, and expects nothing there."
+    after_help = "FILE gives grain, tube and drive in SI (--keys lists the keys), or is a configuration. The report names what lies outside the published runs, and foretells nothing there."
 )]
 pub(crate) struct DesignArguments {
     #[command(flatten)]

@@ -123,7 +123,7 @@ fn sample(arguments: &ReproduceArguments) -> Option<Sample> {
     (extent != Extent::Part(0.0)).then_some(Sample { extent, seed })
 }
 
-/// Computes what is asked for, and examines the claims.
+/// Computes the runs that were asked for, and examines the claims.
 fn outcome(
     arguments: &ReproduceArguments,
     reproduction: &Reproduction,
@@ -205,7 +205,7 @@ fn sampled(sampling: &Sampling<'_>) -> String {
     text
 }
 
-/// The published rows that are not what their runs give, in words; `None` where there are none.
+/// The published rows that differ from their runs computed again, in words; `None` where no row differs.
 fn differing(report: &Report) -> Option<String> {
     let studies = report.published.iter();
     let rows = studies.flat_map(|study| study.differing.iter().map(|row| (study.study, row)));
@@ -213,8 +213,8 @@ fn differing(report: &Report) -> Option<String> {
     let number = rows.len();
     let mut text = match number {
         0 => return None,
-        1 => "a published row is not what its run gives".to_owned(),
-        _ => format!("{number} published rows are not what their runs give"),
+        1 => "a run computed again differs from its published row".to_owned(),
+        _ => format!("{number} runs computed again differ from their published rows"),
     };
     for (study, row) in rows.iter().take(NAMED) {
         let DifferingRow {

@@ -146,7 +146,7 @@ fn published_rows_are_computed_again_and_one_that_was_changed_is_named() {
     shortest_published(&place, "changed", Some(("flow_rate_ratio", 0.5)));
     let line = "reproduce --only Q3 --check 100% --import changed --out other";
     place.call(line).expect_code(3).says(&[
-        "a published row is not what its run gives study wavelength, run ",
+        "a run computed again differs from its published row study wavelength, run ",
         "flow_rate_ratio: 0.5 in the table, 0.99",
         "its configuration: other/again/wavelength/runs/",
     ]);

@@ -1,4 +1,4 @@
-//! What acts on every grain: gravity in our units.
+//! Forces on all grains: gravity in our units.
 
 use super::{Context, plain};
 use crate::error::ProblemKind;

@@ -7,7 +7,7 @@ use crate::configuration::Configuration;
 use crate::error::ProblemKind;
 
 impl Configuration {
-    /// What the reference kernel alone computes of this configuration, in words; `None` where the fast ones do it all.
+    /// The reason, in words, why this configuration needs the reference kernel; `None` where a fast kernel can compute it.
     pub fn reference_only(&self) -> Option<&'static str> {
         match (self.contact.rolling, self.contact.cohesion) {
             (Some(_), Some(_)) => Some("rolling resistance and cohesion"),

@@ -34,8 +34,8 @@ impl Configuration {
     ///
     /// # Errors
     ///
-    /// Everything found wrong, in the order of the texts: first what is wrong with single keys, and where all of these
-    /// are right, what is wrong with their values together.
+    /// All faults, in the order of the texts: first the faults of single keys. Only where no single key is at fault, the
+    /// faults of values that do not go together.
     pub fn from_sources(sources: &Sources<'_>) -> Result<Self, ConfigurationError> {
         Self::from_sources_and(sources, &[])
     }

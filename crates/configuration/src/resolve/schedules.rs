@@ -113,7 +113,7 @@ fn refuse<T>(
     None
 }
 
-/// Why a schedule cannot be: the part of it that is to blame, such as `.values[1]`, and what is wrong with it.
+/// Why a schedule is refused: the part at fault, such as `.values[1]`, and its fault in words.
 struct Refusal {
     part: String,
     message: String,

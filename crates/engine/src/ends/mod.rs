@@ -55,7 +55,7 @@ impl Passed {
     }
 }
 
-/// What has passed the ends since the start.
+/// Grains, mass and energy that have passed the ends since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Passages {
     /// Left through the outlet.
@@ -77,7 +77,7 @@ struct Station {
     waits: bool,
     /// Time at which it was put in; `None` for one that was there at the start \[t\].
     entered: Option<f64>,
-    /// What being put elsewhere has added to its z, turns counted \[d\].
+    /// Change of its z by being put elsewhere, turns counted \[d\].
     carried: f64,
 }
 
@@ -94,7 +94,7 @@ pub struct Ends {
     transit_times: TransitTimes,
 }
 
-/// What a look at the ends has changed.
+/// The changes that a look at the ends has made.
 pub(crate) struct Look {
     /// Whether a grain has left the tube or come in.
     pub(crate) passed: bool,
@@ -176,7 +176,7 @@ impl Ends {
         self.queue.len()
     }
 
-    /// What has passed the ends since the start.
+    /// Grains, mass and energy that have passed the ends since the start.
     pub fn passages(&self) -> &Passages {
         &self.passages
     }
@@ -186,7 +186,7 @@ impl Ends {
         &self.transit_times
     }
 
-    /// What being put in again has added to a grain's z, turns counted \[d\].
+    /// Change of a grain's z by being put in again, turns counted \[d\].
     pub fn carried(&self, grain: usize) -> f64 {
         self.stations[grain].carried
     }

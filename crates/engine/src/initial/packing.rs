@@ -1,4 +1,4 @@
-//! What is to be packed, and how it came out.
+//! The order to pack grains, and its result.
 
 use peristalsis_physics::method::InitialState;
 use peristalsis_physics::sizes::Sizes;

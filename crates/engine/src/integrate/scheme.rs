@@ -1,4 +1,4 @@
-//! What an integrator says: its formulas, for any vectors.
+//! The formulas of an integrator, for any vectors.
 
 use core::ops::{Add, Mul, Sub};
 

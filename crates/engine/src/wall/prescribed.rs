@@ -35,7 +35,7 @@ pub struct PrescribedWall {
 enum WallSpheres {
     Rings(Rings),
     Scattered(Scattered),
-    /// There are none: the wall is smooth.
+    /// No spheres: the wall is smooth.
     Smooth(Smooth),
 }
 

@@ -5,7 +5,7 @@ use peristalsis_physics::contact::ContactForce;
 
 use crate::ledger::Tally;
 
-/// What a contact of a grain with the wall adds to the sums.
+/// The terms that a contact of a grain with the wall adds to the sums.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WallTerms {
     pub(crate) answer: ContactForce,

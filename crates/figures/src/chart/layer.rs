@@ -379,7 +379,7 @@ layers!(
     Points, Line, Band, Bars, Field, Spheres, Reference, Window, Note
 );
 
-/// What a chart asks of every layer.
+/// Interface between a chart and each of its layers.
 pub(super) struct Facts<'a> {
     /// Which of the layers that are drawn upon each other comes first.
     pub(super) depth: usize,

@@ -115,7 +115,7 @@ impl ChartFigure {
         self
     }
 
-    /// What can be seen, in words for those who do not see it.
+    /// Description of the chart, for those who do not see it.
     pub fn description(mut self, description: &str) -> Self {
         description.clone_into(&mut self.description);
         self

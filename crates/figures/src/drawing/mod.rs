@@ -180,7 +180,7 @@ impl Image {
     }
 }
 
-/// Shapes that belong together, with a name and perhaps a window outside of which nothing shows.
+/// Shapes that belong together, with a name and perhaps a window that clips them.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Layer {
     name: &'static str,

@@ -121,7 +121,7 @@ pub(super) fn encode(frame: &Frame) -> String {
     text
 }
 
-/// Step and bytes of the next frame; what is no whole frame is an error of kind `InvalidData`.
+/// Step and bytes of the next frame. A frame that is not whole is an error of kind `InvalidData`.
 fn next_frame(reader: &mut impl BufRead) -> io::Result<(u64, u64)> {
     let mut lines = Lines {
         reader,

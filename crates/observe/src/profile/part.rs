@@ -1,4 +1,4 @@
-//! What happens in a part of the wave, its narrow half or its front, taken by itself.
+//! Forces and velocities in a part of the wave: its narrow half or its front.
 
 use super::{Sums, WaveFrameProfile, standard_error, total};
 
@@ -13,7 +13,7 @@ pub enum WavePart {
     Front,
 }
 
-/// What happens in a part of the wave: late means, each with its error; forces and velocities are positive along the wave.
+/// Forces and velocities in a part of the wave: late means, each with its error, positive along the wave.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartOfWave {
     /// Axial force of the wall on the grains of the part along the normals of contacts \[m d/t^2\].

@@ -11,8 +11,8 @@ use crate::real::Real;
 /// Attraction of touching spheres, of one of two kinds.
 ///
 /// Linear: f_n - f_c, f_c = 4 R_ij (cohesion_force), constant while the spheres overlap and falling linearly to 0 where
-/// they are cohesion_range apart. The pull-off force is f_c; it goes with R_ij as that of wet grains and of small hard ones
-/// (Derjaguin, Mueller & Toporov) does. Nothing is lost by itself when a contact is made and broken.
+/// they are cohesion_range apart. The pull-off force is f_c. It is proportional to R_ij, as for wet grains and for small hard grains
+/// (Derjaguin, Mueller & Toporov). Making and breaking a contact loses no energy.
 ///
 /// JKR (surface energy gamma > 0, with the Hertz law): xi = a^2/R_ij - (2 pi w a/E*)^(1/2),
 /// f_n = 4 E* a^3/(3 R_ij) - (8 pi w E* a^3)^(1/2), a radius of contact \[d\], E* = Y/(2 (1 - nu^2)), w = 2 gamma the work of

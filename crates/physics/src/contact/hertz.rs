@@ -26,7 +26,7 @@ pub enum DissipationForm {
 ///
 /// xi overlap \[d\], v_n positive when parting \[d/t\], R_ij = d_i d_j/(2 (d_i + d_j)) \[d\]. Stored energy
 /// (2/5) 2 Y sqrt(R_ij)/(3 (1 - nu^2)) xi^(5/2). While the bracket is negative the spheres part faster than the
-/// material recovers, and what is still stored counts as dissipated.
+/// material recovers, and the energy that is still stored counts as dissipated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ViscoelasticHertz {
@@ -200,7 +200,7 @@ impl NormalLaw for ViscoelasticHertz {
         }
     }
 
-    /// A from B = s l/v, where s is that of the restitution.
+    /// A from B = s l/v, with the s that belongs to the restitution.
     fn with_restitution(&self, restitution: f64, impact: Impact) -> Self {
         if restitution >= 1.0 {
             return self.undamped();

@@ -54,8 +54,8 @@ pub fn reduced_radius<R: Real>(diameter: R, other: R) -> R {
 }
 
 impl<R: Real> Contact<R> {
-    /// The contact of spheres of diameters d_i and d_j at r_i - r_j = `separation`, v_i - v_j = `relative_velocity`,
-    /// neither of which rotates.
+    /// The contact of spheres of diameters d_i and d_j at r_i - r_j = `separation`, v_i - v_j = `relative_velocity`.
+    /// Neither sphere rotates.
     #[inline(always)]
     pub fn new(
         (diameter, other): (R, R),
@@ -103,7 +103,7 @@ impl<R: Real> Contact<R> {
         self.relative_velocity - self.normal * self.normal_velocity()
     }
 
-    /// What a normal law answers, and max(f_n, 0), which bounds friction.
+    /// The response of the normal law, and max(f_n, 0), which bounds friction.
     #[inline(always)]
     fn normal_force(&self, law: &impl NormalLaw) -> (NormalForce<R>, R) {
         let force = law.force(self.overlap, self.normal_velocity(), self.reduced_radius);
@@ -111,7 +111,7 @@ impl<R: Real> Contact<R> {
     }
 }
 
-/// What a normal law answers. Forces in m d/t^2, the energy in m d^2/t^2.
+/// The response of a normal law to a contact. Forces in m d/t^2, the energy in m d^2/t^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct NormalForce<R: Real = f64> {
     /// f_n, the force on this sphere along n; positive repels.
@@ -122,7 +122,7 @@ pub struct NormalForce<R: Real = f64> {
     pub energy: R,
 }
 
-/// What a tangential law answers. The force in m d/t^2, energies in m d^2/t^2.
+/// The response of a tangential law to a contact. The force in m d/t^2, energies in m d^2/t^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TangentialForce<R: Real = f64> {
     /// f_t on this sphere, perpendicular to n.
@@ -155,7 +155,7 @@ pub trait NormalLaw: Copy + Sync {
     /// Largest overlap of an impact along the normal at relative speed `speed`, without dissipation \[d\].
     fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64;
 
-    /// What comes of an impact along the normal.
+    /// Restitution and duration of an impact along the normal.
     fn rebound(&self, impact: Impact) -> Rebound;
 
     /// The same law with the damping that makes an impact end with the restitution e, 0 < e <= 1.
@@ -215,7 +215,7 @@ impl Elasticity {
 
 /// A force in the plane of contact, and what else a contact has beside its normal law.
 pub trait TangentialLaw: Copy + Sync {
-    /// What a contact remembers from one step to the next.
+    /// The memory of a contact from one step to the next.
     type History<R: Real>: Copy + Default + PartialEq + core::fmt::Debug + Send + Sync;
 
     /// Whether this law turns grains: `false` lets a kernel skip everything about rotation.
@@ -286,7 +286,7 @@ pub struct ContactLaw<N, T> {
     pub tangential: T,
 }
 
-/// What a contact law answers. Forces in m d/t^2, energies in m d^2/t^2, powers in m d^2/t^3.
+/// The response of a contact law. Forces in m d/t^2, energies in m d^2/t^2, powers in m d^2/t^3.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactForce<R: Real = f64> {
     /// Force on this sphere; the partner feels the opposite.
@@ -297,7 +297,7 @@ pub struct ContactForce<R: Real = f64> {
     pub energy: R,
     /// Rate of energy loss along the normal, (f_elastic - f_n) v_n.
     pub normal_dissipation: R,
-    /// What resists rolling: a couple beside the torque, and its loss of this step.
+    /// Rolling resistance: a couple besides the torque, and the energy that it takes in this step.
     pub rolling: RollingCouple<R>,
     /// Tangential part, with its losses of this step.
     pub tangential: TangentialForce<R>,

@@ -40,7 +40,7 @@ impl Default for RollingResistance {
     }
 }
 
-/// What rolling resistance answers. Energies in m d^2/t^2.
+/// The response of rolling resistance to a contact. Energies in m d^2/t^2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RollingCouple<R: Real = f64> {
     /// Couple on this sphere; the partner feels the opposite \[m d^2/t^2\].

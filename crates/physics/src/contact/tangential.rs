@@ -25,7 +25,7 @@ impl TangentialLaw for Frictionless {
     }
 }
 
-/// What becomes of the tangential displacement u while a contact slides.
+/// How the tangential displacement u changes while a contact slides.
 ///
 /// `Spring` leaves what sliding friction can hold. `Balance` lets spring and dashpot together balance the sliding force.
 /// `Literal` is one way to read the source's words.
@@ -67,7 +67,7 @@ pub struct CundallStrack {
     /// Kinetic friction mu_k, not above static_friction. If only static_friction is given, equal to it.
     #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1e6))]
     pub kinetic_friction: f64,
-    /// What becomes of the tangential displacement while a contact slides. Without effect while both frictions are 0.
+    /// How the tangential displacement changes while a contact slides. Without effect while both frictions are 0.
     pub sliding: Sliding,
 }
 

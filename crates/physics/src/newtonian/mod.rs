@@ -131,7 +131,7 @@ impl NewtonianPeristalsis {
         self.mean_area() + self.wave_frame_flow_rate()
     }
 
-    /// Flow rate over that of a fluid carried whole with the wave: Q/(1 + phi^2/2), the J/Jmax of a fluid.
+    /// Flow rate divided by the flow rate if the wave carried all the fluid along: Q/(1 + phi^2/2), the J/Jmax of a fluid.
     pub fn flow_rate_ratio(&self) -> f64 {
         self.flow_rate() / self.mean_area()
     }
@@ -190,7 +190,7 @@ impl NewtonianPeristalsis {
     /// E = Q P/[P (1 + phi^2/2) + 1 + q (1 - phi^2)^(-3/2)]
     ///
     /// The denominator is the mean of the wall's work against the pressure, int p d(h^2)/dx dx, in units of
-    /// 8 pi mu c^2 lambda per wavelength; what is not useful is dissipated, <(1 + q/h^2)^2>. `None` where the wave does
+    /// 8 pi mu c^2 lambda per wavelength; the rest of the power, <(1 + q/h^2)^2>, is dissipated. `None` where the wave does
     /// not pump: unless P > 0, Q > 0 and phi < 1.
     pub fn efficiency(&self) -> Option<f64> {
         let pumps = self.pressure > 0.0 && self.flow_rate() > 0.0 && self.amplitude_ratio < 1.0;

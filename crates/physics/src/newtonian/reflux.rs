@@ -8,7 +8,7 @@
 //! T(epsilon) = < (1 + 8 epsilon dP/dx)^(-1/2) > = 1 - 4 epsilon P + O(epsilon^2),   mean velocity U = 1 - 1/T.
 //!
 //! Near the wall U = -4 epsilon P. The function (1 + y)^(-1/2) is convex, so that T >= (1 + 8 epsilon P)^(-1/2) at every
-//! depth (Jensen): in a round tube there is reflux if and only if P > 0, that is at every flow rate below that of free
+//! depth (Jensen): in a round tube there is reflux if and only if P > 0: at every flow rate below the flow rate of free
 //! pumping. Derived here from the stream function of Shapiro, Jaffrin & Weinberg, J. Fluid Mech. 37, 799 (1969).
 
 use super::NewtonianPeristalsis;

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DriveAngle {
-    /// That of the sphere's place in the lattice.
+    /// The angle of the sphere's place in the lattice.
     #[default]
     Reference,
-    /// That of the sphere as it stands.
+    /// The angle of the sphere where it is now.
     Current,
 }
 

@@ -31,7 +31,7 @@ pub struct SegmentDrive {
     /// Part of the period in which a segment opens; waveform = "segments".
     #[schemars(extend("x-unit" = "periods", "minimum" = 1e-3, "maximum" = 1))]
     pub fall: f64,
-    /// Length of the way from one segment to the next, over that of a segment; waveform = "segments".
+    /// Length over which one segment goes over into the next, in lengths of a segment; waveform = "segments".
     #[schemars(extend("x-unit" = "1", "minimum" = 1e-3, "maximum" = 1))]
     pub edge: f64,
 }
@@ -161,7 +161,7 @@ impl Segments {
             .fold(0.0, f64::max)
     }
 
-    /// Length of the way from one segment to the next \[lambda\].
+    /// Length over which one segment goes over into the next \[lambda\].
     pub fn border(&self) -> f64 {
         self.edge / f64::from(self.number)
     }

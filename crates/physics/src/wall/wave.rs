@@ -14,7 +14,7 @@ pub enum WaveDirection {
     /// As the source writes it: towards -z under strain control, towards +z under stress control.
     #[default]
     Forward,
-    /// Turned round.
+    /// The other way.
     Backward,
 }
 

@@ -18,7 +18,7 @@ __version__: str
 REVISION: str
 
 class ConfigurationError(ValueError):
-    """A configuration that cannot be: the key, where it was given, and what is allowed."""
+    """A configuration that is not possible: the key, where it was given, and what is allowed."""
 
 class DoesNotFitError(ValueError):
     """More grains than the tube holds."""
@@ -33,7 +33,7 @@ class StudyFailure(RuntimeError):
     """A study or its store cannot do what was asked."""
 
 class AnalysisError(ValueError):
-    """Data that an estimator can say nothing about."""
+    """Data that do not allow an estimate."""
 
 @final
 class Configuration(Mapping[str, Any]):

@@ -1,4 +1,4 @@
-"""A parameter of the drive led there and back."""
+"""A parameter of the drive changed there and back."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Thresholds(NamedTuple):
     Attributes
     ----------
     there, back : Threshold or None
-        That of the first way, and that of the way back.
+        The threshold on the way there, and on the way back.
 
     Examples
     --------
@@ -65,7 +65,7 @@ class Thresholds(NamedTuple):
 
 @dataclass(frozen=True)
 class Loop:
-    """J/Jmax while a parameter of the drive is led there and back; what `Simulation.ramp` answers.
+    """J/Jmax while a parameter of the drive changes there and back; the result of `Simulation.ramp`.
 
     Attributes
     ----------

@@ -82,7 +82,7 @@ class Made(Output):
         Raises
         ------
         ConfigurationError
-            Where a key or value cannot be: in the words of the command line.
+            Where a key is unknown or a value not allowed: in the words of the command line.
         DoesNotFitError
             Where the tube does not hold the grains.
 
@@ -217,7 +217,7 @@ class Made(Output):
         velocities : array_like, optional
             Velocities in the frame of the tube [d/t], shape (N, 3); at rest by default.
         diameters : array_like, optional
-            Diameters [d], shape (N,), or one for all; that of the configuration by default.
+            Diameters [d], shape (N,), or one for all; the diameter of the configuration by default.
 
         Returns
         -------
@@ -294,7 +294,7 @@ class Made(Output):
         Parameters
         ----------
         snapshot : bytes
-            What `to_bytes` answered, or the content of a file of `save` or of the command line.
+            The result of `to_bytes`, or the content of a file of `save` or of the command line.
 
         Returns
         -------
@@ -327,7 +327,7 @@ class Made(Output):
         Returns
         -------
         Simulation
-            At the step of the file; doubts about it are told anew.
+            At the step of the file. Warnings about it are given again.
 
         Raises
         ------

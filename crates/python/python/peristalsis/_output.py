@@ -74,12 +74,12 @@ class Output(Drive):
         Parameters
         ----------
         writer : Writer
-            What `add_writer` answered.
+            The result of `add_writer`.
 
         Raises
         ------
         ValueError
-            Where it is none of this simulation's writers.
+            Where it does not belong to this simulation.
 
         Examples
         --------

@@ -35,7 +35,7 @@ def run(config: Mapping[str, Any]) -> RunSummary:
     TypeError
         Where it names neither a preset nor a file, or both.
     ConfigurationError
-        Where a key or value cannot be.
+        Where a key is unknown or a value not allowed.
 
     Examples
     --------

@@ -102,7 +102,7 @@ class Simulation(Made):
         Raises
         ------
         DivergedError
-            Where a grain moves too far in one step; the state is that of the step that failed, and the simulation goes no
+            Where a grain moves too far in one step; the state is the state after that step, and the simulation goes no
             further.
         ConfigurationError
             For a length shorter than half a step, or of more steps than any run can have.
@@ -242,7 +242,7 @@ class Simulation(Made):
         Parameters
         ----------
         parameter : {"width", "force_amplitude", "strain_rate"}
-            What is led.
+            The parameter to change.
         start, stop : float
             First and last level, in the unit of the parameter; it jumps to `start` at once.
         periods : float

@@ -219,11 +219,12 @@ class State:
 
     @property
     def energy_ledger(self) -> dict[str, float]:
-        """Where energy is, where it came from and where it went since the start [m d^2/t^2].
+        """The energy now, the work done and the energy lost since the start [m d^2/t^2].
 
-        energy = initial_energy + wall_work + drive_work + keep_work + body_work - normal_dissipated -
-        tangential_dissipated - sliding_dissipated - drag_dissipated - network_dissipated - history_reset, up to
-        `energy_residual` of what entered.
+        energy = initial_energy + wall_work + drive_work + keep_work + body_work + exchanged - normal_dissipated -
+        tangential_dissipated - sliding_dissipated - rolling_dissipated - cohesion_dissipated - drag_dissipated -
+        network_dissipated - history_reset, up to the part `energy_residual` of the energy that entered. `exchanged` is the
+        energy that grains brought into an open tube, less what others took out.
 
         Examples
         --------

@@ -65,7 +65,7 @@ def study(
     Raises
     ------
     ConfigurationError, StudyFailure
-        Where a key or value cannot be.
+        Where a key is unknown or a value not allowed.
 
     Examples
     --------

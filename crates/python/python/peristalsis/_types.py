@@ -86,7 +86,7 @@ class Keywords(TypedDict, total=False):
     """contact.young_modulus. Young's modulus Y of the Hertz law, f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - A
     sqrt(xi) v_n). (Unit: m d^-1 t^-2.)"""
     control: Literal["strain", "stress"]
-    """drive.control. What of the wall is prescribed: its radius (strain) or the radial force on its spheres
+    """drive.control. Whether the radius of the wall is prescribed (strain) or the radial force on its spheres
     (stress)."""
     density: float
     """units.density. Density of the grains' material. The unit of mass is m = pi density d^3/6. (Unit: kg m^-3.)"""
@@ -141,10 +141,10 @@ class Keywords(TypedDict, total=False):
     """drive.duty. Part of the period for which a segment is closed; duty + rise + fall is at most 1; waveform =
     "segments". (Unit: periods.)"""
     edge: float
-    """drive.edge. Length of the way from one segment to the next, over that of a segment; waveform = "segments". (A
-    pure number.)"""
+    """drive.edge. Length over which one segment goes over into the next, in lengths of a segment; waveform =
+    "segments". (A pure number.)"""
     ends: Literal["periodic", "open"]
-    """tube.ends. What the ends of the tube are."""
+    """tube.ends. How the tube ends."""
     fall: float
     """drive.fall. Part of the period in which a segment opens; waveform = "segments". (Unit: periods.)"""
     force_amplitude: float
@@ -200,16 +200,16 @@ class Keywords(TypedDict, total=False):
     """grains.large_fraction. Part of the grains, by number, that have diameter_max under sizes = "two"; the others
     have diameter_min. (A pure number.)"""
     large_volume_fraction: float
-    """grains.large_volume_fraction. Part of the grains' volume that those of diameter_max have, instead of
-    large_fraction. (A pure number.)"""
+    """grains.large_volume_fraction. Part of the volume of all grains that the grains of diameter_max have, instead
+    of large_fraction. (A pure number.)"""
     late_fraction: float
     """observe.late_fraction. Part of the run, at its end, over which late means and profiles are taken. (A pure
     number.)"""
     law: Literal["linear", "hertz"]
     """contact.law. Normal contact law. It takes the keys that name it; friction goes with every law."""
     length: float
-    """inlet.length. Length of the stretch in which grains are put in, from the far end of the head on. Default: 3
-    largest diameters. (Unit: d.)"""
+    """inlet.length. Length of the stretch in which grains are put in, at the end of the head that is farther from
+    the outlet. Default: 3 largest diameters. (Unit: d.)"""
     material: Literal["glass", "sand", "steel", "pmma", "tablet"]
     """units.material. What the grains are made of: stands for units.density, contact.static_friction and
     kinetic_friction, the restitution (contact.restitution), and under contact.law = "hertz" for
@@ -252,8 +252,8 @@ class Keywords(TypedDict, total=False):
     poisson_ratio: float
     """contact.poisson_ratio. Poisson's ratio nu of the Hertz law. (A pure number.)"""
     profile_bins: int
-    """observe.profile_bins. Bins of the profiles over one wavelength. The largest pressure on the wall is that of a
-    bin: it grows with their number. (A pure number.)"""
+    """observe.profile_bins. Bins of the profiles over one wavelength. The largest pressure on the wall is the
+    largest of any bin: it grows with the number of bins. (A pure number.)"""
     pull_off: Literal["displacement", "force"]
     """contact.pull_off. Where the neck of a JKR contact breaks."""
     radial: float
@@ -315,8 +315,8 @@ class Keywords(TypedDict, total=False):
     sizes: Literal["uniform", "lognormal", "two", "table"]
     """grains.sizes. How diameters are distributed, by number, from diameter_min to diameter_max."""
     sliding: Literal["spring", "balance", "literal"]
-    """contact.sliding. What becomes of the tangential displacement while a contact slides. Without effect while
-    both frictions are 0."""
+    """contact.sliding. How the tangential displacement changes while a contact slides. Without effect while both
+    frictions are 0."""
     sphere_diameter: float
     """wall.sphere_diameter. Diameter d_w of a wall sphere. The surface of the wall lies d_w/2 inside the tube's
     radius, so that the clear opening of the bottleneck is w - d_w. Under arrangement = "smooth" it is the same
@@ -390,8 +390,8 @@ class Keywords(TypedDict, total=False):
     units_stiffness: float
     units_surface_energy: float
     """units.surface_energy. Surface energy gamma of JKR cohesion, half the work of adhesion, instead of
-    contact.surface_energy. Dry glass has some 0.05; grains that are computed softer than they are cling more.
-    (Unit: J m^-2.)"""
+    contact.surface_energy. Dry glass has some 0.05; grains that are softer in the computation than in reality cling
+    more. (Unit: J m^-2.)"""
     units_wave_frequency: float
     units_young_modulus: float
     """units.young_modulus. Young's modulus in SI. With contact.young_modulus it fixes the unit of time, sqrt(m/(Y

@@ -80,7 +80,7 @@ class Writer:
     Raises
     ------
     ValueError
-        For an ending of no known format, spans and instants that are none, or, when the first frame is due, an interval
+        For an unknown ending, spans or instants that cannot be read, or, when the first frame is due, an interval
         shorter than a step.
     FileExistsError
         Where there is such a file already, when the first frame is due.

@@ -61,7 +61,7 @@ impl FilmFormat {
     }
 }
 
-/// What is known of a film before its first picture.
+/// Properties of a film that are fixed before its first picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmPlan {
     /// Pictures in all.
@@ -105,7 +105,7 @@ pub struct Film {
 /// Pixels across and down.
 type Size = (u32, u32);
 
-/// What writes the pictures of a film, all of one size.
+/// A writer of the pictures of a film, all of one size.
 trait Encoder {
     fn add(&mut self, picture: &Picture) -> Result<(), RenderError>;
 

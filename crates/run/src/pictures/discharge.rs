@@ -1,4 +1,4 @@
-//! What an open tube discharges.
+//! The figure of the discharge of an open tube.
 
 use peristalsis_analysis::number::with_error;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Tint};

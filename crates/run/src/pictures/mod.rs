@@ -96,7 +96,7 @@ fn title(configuration: &Configuration) -> String {
     format!("{control},  *ε\u{307}* = {rate},  {density},  {rest}")
 }
 
-/// What sets a run apart from most: its waveform, its body force.
+/// Unusual settings of a run: its waveform, its body force.
 fn particular(configuration: &Configuration) -> Option<String> {
     let waveform = configuration.drive.waveform;
     let waveform = (waveform != WaveformName::Sine).then(|| word(waveform));
@@ -217,7 +217,7 @@ fn late_mean((mean, error): (f64, f64), part: f64, last: f64) -> Option<[ChartLa
     Some([line.into(), band.tint(Tint::Orange).into()])
 }
 
-/// What a Newtonian fluid would do in this tube, up to a last period.
+/// Flow of a Newtonian fluid in this tube, up to a last period.
 fn newtonian_fluid(summary: &Summary, last: f64) -> Vec<Line> {
     let level = |ratio: Option<f64>, name: &str, pattern: Pattern| {
         let line = Line::new(name, &[0.0, last], &[ratio?; 2]);

@@ -18,7 +18,7 @@ const WAVES: u32 = 4;
 const DIAMETERS: f64 = 1000.0;
 /// How far from the axis a snapshot shows spheres, in radii of the tube.
 const RADII: f64 = 2.5;
-/// How far at most, in lengths of what is shown: a picture of a wider tube would be all height.
+/// The same limit in lengths of the part of the tube that is shown, so that the picture of a wide tube is not too high.
 const LENGTHS: f64 = 2.0;
 /// Places at which a snapshot knows the radius of a prescribed wall.
 const OUTLINE_POINTS: u32 = 400;
@@ -58,7 +58,7 @@ fn draw(title: &str, runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
     .draw()
 }
 
-/// What velocities are told over, in markup: the speed of the wave, or of the fastest grain where a wave stands.
+/// Unit of velocities, in markup: the speed of the wave, or of the fastest grain where the wave stands.
 fn unit_of_speed(runs: &[(&str, &Run)]) -> (String, Option<f64>) {
     let Some((_, still)) = runs
         .iter()
@@ -82,7 +82,7 @@ fn largest_axial_speed(run: &Run) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// What a snapshot shows of a run.
+/// The part of a run that a snapshot shows.
 struct SideView {
     grains: Vec<SnapshotGrain>,
     /// Where the wall is, place by place.

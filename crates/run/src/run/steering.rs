@@ -88,8 +88,8 @@ impl Run {
         Ok(())
     }
 
-    /// Makes the configured length that of a run to the next sample, where it is less: what goes on past its end is a longer
-    /// run, and its configuration repeats it. (A static wave has a number of samples whatever its length, and keeps it.)
+    /// Extends the configured length to the next sample, if it is shorter. A run that goes on past its end is a longer run,
+    /// and its configuration repeats it. (A static wave has a number of samples whatever its length, and keeps it.)
     pub(super) fn last_to_next_sample(&mut self) {
         let Configuration {
             run,

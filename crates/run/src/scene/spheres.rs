@@ -81,7 +81,7 @@ impl PictureScene {
         rods
     }
 
-    /// What z of a picture is less than z of the tube \[d\], up to whole lengths.
+    /// z of the tube minus z of the picture \[d\], up to whole lengths.
     pub(super) fn shift(&self, cycles: f64) -> f64 {
         let middle = 0.5 * self.wall.length();
         let wave = self.wall.heading() * self.wall.wavelength();

@@ -21,7 +21,7 @@ pub struct MixedGrains {
 }
 
 impl MixedGrains {
-    /// Of all samples of a run and the late ones, `each` of which are a period; `None` where there is no index.
+    /// From all samples of a run and its late samples; a period has `each` samples. `None` where there is no index.
     pub(super) fn of(samples: &[Sample], late: &[Sample], each: usize) -> Option<Self> {
         let measured =
             |of: fn(&Mixing) -> f64| measured(late, each, |sample| sample.mixing.as_ref().map(of));
@@ -40,7 +40,7 @@ impl MixedGrains {
     }
 }
 
-/// Segregation of grains of several sizes: late means of correlations, each with its error; `None` where there is none.
+/// Segregation of grains of several sizes: late means of correlations, each with its error; `None` where it is not defined.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegregatedSizes {
     /// With the distance from the axis, [`Segregation::radial`].
@@ -52,7 +52,7 @@ pub struct SegregatedSizes {
 }
 
 impl SegregatedSizes {
-    /// Of the late samples of a run, `each` of which are a period.
+    /// From the late samples of a run; a period has `each` samples.
     pub(super) fn of(late: &[Sample], each: usize) -> Self {
         let measured = |of: fn(&Segregation) -> Option<f64>| {
             measured(late, each, |sample| of(&sample.segregation))
@@ -65,8 +65,8 @@ impl SegregatedSizes {
     }
 }
 
-/// Mean and error of what is looked at once in a period of `each` samples, which all say it until the next; `None` where one of
-/// the numbers is missing.
+/// Mean and error of a number that is measured once per period and repeated by all `each` samples of the period; `None`
+/// where one of the numbers is missing.
 fn measured(
     late: &[Sample],
     each: usize,

@@ -1,4 +1,4 @@
-//! What passes through an open tube.
+//! The discharge of an open tube.
 
 use core::f64::consts::PI;
 

@@ -16,8 +16,8 @@ pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
 
 /// Late mean of J/Jmax and its error; NaN where the wave stands all the time.
 ///
-/// Where the wave pauses there is no Jmax: then it is the mean of J over that of Jmax = N c/L, c being the mean speed of the
-/// wave. What flows while the wave stands counts. `length` is L, between the ends of an open tube \[lambda\].
+/// While the wave pauses Jmax is 0. The result is then the mean of J divided by the mean of Jmax = N c/L, with c the mean
+/// speed of the wave. Flow while the wave stands counts. `length` is L, between the ends of an open tube \[lambda\].
 pub(super) fn flow_rate_ratio(samples: &[Sample], late: &[Sample], length: f64) -> (f64, f64) {
     let ratios = super::ratios_of(late);
     let frequency = frequency(samples, late);

@@ -68,7 +68,7 @@ pub struct Summary {
     pub energy_residual: f64,
     /// Pumping against a body force, where there is one.
     pub pumping: Option<Pumping>,
-    /// What passes through an open tube; `None` of a periodic one.
+    /// Discharge of an open tube; `None` for a periodic tube.
     pub discharge: Option<Discharge>,
     /// Late mean of the pressure on the wall \[m/(d t^2)\].
     pub wall_pressure: f64,

@@ -32,7 +32,7 @@ pub struct Trajectory {
     files: Vec<Box<dyn TrajectoryFile>>,
 }
 
-/// What was written of a trajectory.
+/// The part of a trajectory that was written.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct TrajectoryReport {
     /// The files that readers open; bytes of a name that are not Unicode are replaced by marks.
@@ -51,7 +51,7 @@ fn as_text<S: serde::Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::
     serializer.collect_seq(paths.iter().map(|path| path.to_string_lossy()))
 }
 
-/// What would be written of a trajectory.
+/// Estimate of the files of a trajectory.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct TrajectoryEstimate {
     /// Frames.
@@ -223,7 +223,7 @@ fn write_plan(folder: &Path, plan: &TrajectoryPlan) -> Result<(), RunError> {
     Ok(atomic::write(&folder.join(PLAN), text.as_bytes())?)
 }
 
-/// What a trajectory of a whole run would take, by a frame of a run like it with `scale` times fewer spheres.
+/// Estimate of the files of a whole run, from a frame of a run like it with `scale` times fewer spheres.
 pub(crate) fn estimate(
     request: &TrajectoryRequest,
     configuration: &Configuration,

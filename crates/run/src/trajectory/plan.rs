@@ -16,7 +16,7 @@ const FRAMES_OF_A_STATIC_RUN: u64 = 100;
 const MOST_SPHERES: u64 = 20_000_000;
 /// Most frames of a trajectory.
 const MOST_FRAMES: u64 = 10_000_000;
-/// What a window is, where one holds no frame.
+/// The explanation of a window, for a window that holds no frame.
 pub(super) const WINDOW_HELP: &str =
     "the window is FROM:TO in periods of the run, or in time with a t: 20:25, 5t:10t";
 
@@ -99,7 +99,7 @@ impl FromStr for Window {
     }
 }
 
-/// What a person wants of a trajectory.
+/// A request for a trajectory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TrajectoryRequest {
     /// In which formats.

@@ -1,4 +1,4 @@
-//! What a run has seen that solid grains in a tight tube would not show.
+//! Warnings about events of a run that solid grains in a tight tube would not show.
 
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_physics::wall::Arrangement;

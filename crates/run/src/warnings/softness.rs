@@ -26,7 +26,7 @@ pub fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
     overlap / diameter
 }
 
-/// What looks doubtful in the softness that units in SI make of the fastest wave.
+/// Warnings about grains that are too soft for the fastest wave, with units in SI.
 ///
 /// Advice keeps the wave's frequency: without `units.wave_frequency` the wave in SI follows the elasticity, so that the
 /// overlap, which is a function of the strain rate alone, and the steps of a period would stay as they are.
@@ -87,7 +87,7 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
     None
 }
 
-/// What the units say of the grains' elasticity.
+/// The elasticity of the grains that the units give.
 pub(super) struct Material {
     pub(super) key: &'static str,
     /// In SI.

@@ -1,4 +1,4 @@
-//! What a person sees of a study in progress.
+//! The progress of a study, as a person sees it.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub struct Board {
     pub fraction: f64,
     /// Time left, from the speed since this process began; `None` while nothing can be said.
     pub left: Option<Duration>,
-    /// What each worker of this process does.
+    /// Work of each worker of this process.
     pub workers: Vec<Option<Working>>,
     /// Running estimates of the critical value, one for each combination of the other axes.
     pub brackets: Vec<Bracket>,

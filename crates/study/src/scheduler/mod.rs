@@ -51,7 +51,7 @@ pub enum Ending {
     TimeUp,
 }
 
-/// What the threads of a process share.
+/// State that the threads of a process share.
 struct Shared<'a> {
     store: &'a Store,
     study: &'a Specification,
@@ -65,7 +65,7 @@ struct Shared<'a> {
     working: Mutex<Vec<Option<Working>>>,
 }
 
-/// What one thread at a time may look at or change.
+/// State behind the lock.
 struct Common {
     index: Index,
     plan: Plan,

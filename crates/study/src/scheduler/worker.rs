@@ -11,7 +11,7 @@ use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::store::{Assignment, Claim, Entry, RunFiles, State, Verdict, done};
 
-/// What is known of a run that has ended, well or not, or was saved to go on later; `None` where another process has it now.
+/// State of a run that has ended, well or not, or was saved to go on later; `None` where another process has it now.
 type Outcome = Option<Entry>;
 
 /// Works until nothing is left or the process is to stop; an error stops the whole process.
@@ -89,7 +89,7 @@ fn carry_out(
         Verdict::Damaged(reason) => {
             shared.store.quarantine_run(identity, &reason)?;
             shared.tell(format!(
-                "run {identity} is not what was sealed ({reason}): moved aside, computed again"
+                "the files of run {identity} differ from its seal ({reason}): moved aside, computed again"
             ));
         }
         Verdict::Nothing | Verdict::Checkpointed => {}

@@ -22,7 +22,7 @@ pub(super) struct Keys {
     /// Configuration file that every run builds on, relative to the folder of the study file; its seed is ignored. Instead
     /// of `preset`.
     pub(super) file: Option<String>,
-    /// Initial states that every point is run from. Default: that of the base configuration.
+    /// Initial states that every point is run from. Default: the initial state of the base configuration.
     #[schemars(extend("minItems" = 1, "items" = {"type": "string", "enum": ["rest", "settled", "jammed"]}))]
     pub(super) states: Option<Vec<InitialState>>,
     /// Runs of each point, which differ in their random numbers alone.

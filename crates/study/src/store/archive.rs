@@ -13,7 +13,7 @@ use crate::identity::Identity;
 use crate::store::entry::Entry;
 use crate::store::run_files::RunFiles;
 
-/// What an archive holds.
+/// Content of an archive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Packed {
     /// Runs in it.

@@ -11,7 +11,7 @@ use super::{
 use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 
-/// What a check of the files found.
+/// Result of a check of the files.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Verification {
     /// Finished runs whose hashes check.
@@ -57,7 +57,7 @@ impl Store {
                 Verdict::Damaged(reason) => {
                     self.quarantine_run(identity, &reason)?;
                     news.push(format!(
-                        "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
+                        "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
                     ));
                     changed.push((identity, Entry::new(State::Quarantined, Some(reason))));
                 }

@@ -14,7 +14,7 @@ use crate::plan::{Plan, PlannedRun, Setting, SettingValue};
 use crate::row::{PHYSICS, Row};
 use crate::store::entry::{Entry, State};
 
-/// What an export wrote.
+/// Result of an export.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Exported {
     /// The files.

@@ -49,7 +49,7 @@ pub(crate) enum Verdict {
         /// Sizes and times of change of what was checked.
         stamp: Option<String>,
     },
-    /// It was sealed, and is not what was sealed.
+    /// Its files differ from its seal.
     Damaged(String),
     /// It ended in this error.
     Failed(String),

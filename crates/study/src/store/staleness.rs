@@ -8,12 +8,12 @@ use super::run_files::{STATEPOINT, statepoint};
 use super::{Assignment, Store, Survey};
 use crate::identity::Identity;
 
-/// What sets a run apart from the study as it stands.
+/// The difference between a run in the store and the study as it is now.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Staleness {
     /// The run of the study that is most like it, in words.
     pub nearest: String,
-    /// What differs, in words, such as "run.periods: 200.0, now 300.0".
+    /// The difference in words, such as "run.periods: 200.0, now 300.0".
     pub differences: Vec<String>,
 }
 

@@ -79,7 +79,7 @@ impl Survey {
         runs.map(work).sum()
     }
 
-    /// What a run that has ended says of its point.
+    /// Outcome of a run that has ended, for its point.
     pub fn finding(&self, identity: &Identity) -> Option<Finding> {
         finding(&self.entries, identity)
     }
@@ -109,7 +109,7 @@ impl Survey {
     }
 }
 
-/// What a run that has ended says of its point.
+/// Outcome of a run that has ended, for its point.
 pub(crate) fn finding(entries: &HashMap<Identity, Entry>, identity: &Identity) -> Option<Finding> {
     let entry = entries.get(identity)?;
     match entry.state {

@@ -23,8 +23,7 @@ const ROOM: usize = 32_000_000;
 /// Frames from one that is kept to the next.
 const APART: u64 = 4;
 
-/// Frames of the course that the run has taken, for pages that come later: with every second one, and so on, of what is
-/// longer ago.
+/// Frames of the run so far, for pages that come later. The older the frames, the fewer of them are kept.
 #[derive(Debug, Default)]
 struct Past {
     frames: Vec<(u64, Arc<Vec<u8>>)>,

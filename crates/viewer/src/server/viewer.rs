@@ -200,7 +200,7 @@ impl Viewer {
     }
 }
 
-/// Takes connections, each of which has a place among [`CONNECTIONS`] until it ends or becomes a client's.
+/// Takes at most [`CONNECTIONS`] connections at a time. A connection that ends, or becomes a client's, makes room for another.
 async fn accept_all(listener: TcpListener, router: Router) {
     let places = Arc::new(Semaphore::new(CONNECTIONS));
     while let Ok(place) = Arc::clone(&places).acquire_owned().await {

@@ -1,4 +1,4 @@
-//! What `peristalsis render` is asked for.
+//! The options of `peristalsis render`.
 
 use std::path::PathBuf;
 
@@ -23,7 +23,7 @@ pub(crate) enum ViewName {
 pub(crate) enum Origin {
     /// frames that were written in GSD
     Trajectory,
-    /// the saved state, and what follows it
+    /// the saved state, and the run from there on
     State,
     /// the run computed anew
     Start,
@@ -108,7 +108,7 @@ pub(crate) struct RenderArguments {
     /// Frames per second.
     #[arg(long, value_name = "N", default_value_t = 20.0)]
     pub(crate) fps: f64,
-    /// File for the picture or film; one that exists is replaced. The default is DIR/tube-VIEW with the format's ending.
+    /// File for the picture or film; an older one is replaced. The default is DIR/tube-VIEW with the format's ending.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print what was made as JSON.

@@ -127,7 +127,7 @@ fn begin(arguments: &RunArguments, stop: &Stop) -> Result<(RunFolder, Run), Fail
     Ok((folder, run))
 }
 
-/// A configuration that can run as asked for: what is refused is refused before anything is made.
+/// A configuration that can run as asked for. Every refusal comes before a folder is made.
 fn checked(
     arguments: &RunArguments,
     configuration: Configuration,

@@ -21,12 +21,12 @@ use crate::progress::Display;
 use crate::sources::{configuration, name};
 use crate::stop::Stop;
 
-/// What the folder of a replica is called before its seed.
+/// Name of the folder of a replica, before its seed.
 const STEM: &str = "seed-";
 
 /// The folders of replicas.
 pub(super) struct Replicas {
-    /// Taken, so that no other program goes on with them; that of each is taken when its turn comes.
+    /// Locked, so that no other program goes on with the replicas. The folder of each replica is locked when its turn comes.
     folder: RunFolder,
     each: Vec<(u64, PathBuf)>,
     /// The warnings that were said already.
@@ -160,7 +160,7 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
     conclude(arguments, replicas.folder.path(), worked, &stop)
 }
 
-/// What a lock guards: a thread that panicked ends the program anyway.
+/// The content of a lock; a thread that panicked ends the program anyway.
 fn locked<T>(guarded: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     guarded
         .lock()
@@ -207,7 +207,7 @@ fn asks_for_files(arguments: &RunArguments) -> bool {
     arguments.csv || !arguments.frames.trajectory.is_empty()
 }
 
-/// What a replica came to, in a line.
+/// The result of a replica, in a line.
 fn line(seed: u64, outcome: &Outcome) -> String {
     let summary = &outcome.summary;
     let flow = match known(summary.flow_rate_ratio) {
@@ -228,7 +228,7 @@ fn line(seed: u64, outcome: &Outcome) -> String {
     format!("seed {seed}: {flow}; {transition}{ending}")
 }
 
-/// What the replicas warn of besides what was said: of each key the first warning, with its seed.
+/// New warnings of the replicas: the first warning of each key, with its seed.
 fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
     let mut seen: Vec<Warning> = Vec::new();
     for (seed, _, outcome) in worked {

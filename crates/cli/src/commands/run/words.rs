@@ -1,4 +1,4 @@
-//! What came out of a run, in words.
+//! The results of a run, in words.
 
 use peristalsis_analysis::number::{known_error, plain, with_error};
 use peristalsis_configuration::Units;
@@ -131,7 +131,7 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     text
 }
 
-/// What sliding takes at the wall, where grains slide there.
+/// Power lost to sliding at the wall, where grains slide there.
 fn wear(summary: &Summary) -> String {
     let Some(wear) = summary.wear.filter(|wear| wear.power.0 > 0.0) else {
         return String::new();
@@ -207,7 +207,7 @@ fn segregation(run: &Run, summary: &Summary) -> String {
     }
 }
 
-/// What passes through an open tube.
+/// The discharge of an open tube.
 fn through(discharge: &Discharge, summary: &Summary) -> String {
     let flow = |rate| {
         let per_hour = |units: &Units| 3600.0 * units.mass_flow();

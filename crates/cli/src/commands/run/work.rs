@@ -23,7 +23,7 @@ pub(super) enum Ending {
     Failed(RunError),
 }
 
-/// What a run came to.
+/// How a run ended.
 pub(super) struct Outcome {
     pub(super) ending: Ending,
     pub(super) summary: Summary,

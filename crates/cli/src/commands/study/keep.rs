@@ -60,11 +60,11 @@ fn in_words(found: &Verification) -> String {
     text
 }
 
-/// What is said of runs whose files were not whole.
+/// Messages about runs whose files were not whole.
 fn moved_aside(runs: &[(Identity, String)]) -> impl Iterator<Item = String> {
     runs.iter().map(|(identity, reason)| {
         format!(
-            "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
+            "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
         )
     })
 }

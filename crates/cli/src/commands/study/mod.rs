@@ -21,7 +21,7 @@ use crate::failure::Failure;
 /// What to do with a study.
 #[derive(Debug, Subcommand)]
 pub(crate) enum StudyCommand {
-    /// Say what a study would run, and how much time and disk it would take; computes nothing.
+    /// Say what a study would run, and how much time and disk it would take; tries a few steps, writes nothing.
     Plan(PlanArguments),
     /// Compute the runs that are missing; may be stopped, called again, and called several times at once.
     Run(RunArguments),
@@ -29,11 +29,11 @@ pub(crate) enum StudyCommand {
     Submit(SubmitArguments),
     /// Say how far a study is.
     Status(StatusArguments),
-    /// Say all that is known of one run, and why it is as it is.
+    /// Say everything about one run: its state, and the reason for it.
     Why(WhyArguments),
     /// Mark runs to be computed again; their files are moved aside.
     Retry(RetryArguments),
-    /// Check the hashes of all finished runs; what does not match is moved aside.
+    /// Check the hashes of all finished runs; files that do not match are moved aside.
     Verify(StoreArguments),
     /// Make the index of a store anew from its files.
     Scan(StoreArguments),
@@ -52,7 +52,7 @@ pub(crate) struct PlanArguments {
     /// Study file in TOML.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Store whose finished runs are counted; the default is that of `study run`.
+    /// Store whose finished runs are counted; the default is the store of `study run`.
     #[arg(long, value_name = "DIR")]
     store: Option<PathBuf>,
     /// Print as JSON.
@@ -133,7 +133,7 @@ pub(crate) struct SubmitArguments {
     /// A further option of sbatch, such as --option=--mem-per-cpu=1G; may be given several times.
     #[arg(long = "option", value_name = "OPTION", allow_hyphen_values = true)]
     options: Vec<String>,
-    /// Script to write, - for standard output; the default is NAME.sbatch. One that is there is replaced.
+    /// Script to write, - for standard output; the default is NAME.sbatch. An older file is replaced.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

@@ -36,7 +36,7 @@ impl StudyDisplay {
         self.update_part(board, overall(board, &part, board.left), board.fraction);
     }
 
-    /// Shows how far a study is, and how far the whole of which it is a part, in words and as a fraction.
+    /// Shows the progress of a study, and of the whole work that it belongs to, in words and as a fraction.
     pub(crate) fn update_part(&mut self, board: &Board, words: String, fraction: f64) {
         for news in &board.news {
             self.display.tell(news);
@@ -88,7 +88,7 @@ fn below(board: &Board) -> Vec<String> {
     lines
 }
 
-/// How far a study is; `part` is said of the work, of which so much time is left.
+/// The progress of a study in words; `part` names the work, and `left` is the time that it still takes.
 pub(crate) fn overall(board: &Board, part: &str, left: Option<Duration>) -> String {
     let mut text = format!("{} of {} done", board.done, counted(board.total, "run"));
     if board.failed > 0 {

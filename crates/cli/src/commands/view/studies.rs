@@ -58,7 +58,7 @@ impl Studies {
         Ok((!found.is_empty()).then_some(found))
     }
 
-    /// What is wrong with one study is told, and the others are shown.
+    /// A study with a fault is named, and the others are shown.
     fn add(&mut self, path: &Path, study: Result<Study, Failure>) {
         match study {
             Ok(study) => self.studies.push(study),
@@ -81,7 +81,7 @@ fn reading(studies: usize, source: &Path) {
     }
 }
 
-/// What is wrong with a study is said as by every command about it.
+/// A fault of a study in the words of every command about it.
 fn failure(error: ViewerError) -> Failure {
     match error {
         ViewerError::Study(error) => Failure::Study(error),
@@ -89,7 +89,7 @@ fn failure(error: ViewerError) -> Failure {
     }
 }
 
-/// What is as wanted in a folder, by name; nothing where there is no folder.
+/// The entries of a folder that fit, by name; none where there is no folder.
 fn inside(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();

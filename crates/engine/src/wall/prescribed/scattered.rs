@@ -16,20 +16,20 @@ use crate::fast::lanes::{LANES, Lanes, Mask};
 use crate::fast::machine::{Instructions, Machine, Work};
 use crate::initial::uniform;
 
-/// Purpose of these random numbers beside those of the grains, whatever the seeds.
+/// Stream of these random numbers. It differs from the streams of the grains, so that equal seeds do no harm.
 const STREAM: u64 = 3;
-/// Failures in a row after which spheres are let come nearer to each other, and by how much.
+/// Failures in a row after which the least distance of two spheres is lowered, and the factor of this.
 const PATIENCE: u32 = 20_000;
 const NEARER: f64 = 0.99;
-/// Distance \[d\], or square of one, by which a first look at a sphere sees too far, so that rounding hides none.
+/// Margin of the first test of a sphere, as a distance \[d\] or the square of one, so that rounding hides no contact.
 const EDGE: f64 = 1e-6;
-/// Part of a surface that discs cover where no more find room, when they come one after another: nobody has covered more.
+/// Part of a surface that discs at random places cover when no further disc finds room.
 const MOST_COVERED: f64 = 0.55;
 
 /// Spheres that follow the wave, each at its own angle and z.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scattered {
-    /// cos and sin of the angle of each, and its z; in the order of z, which is that of their numbers. Room for eight more.
+    /// cos and sin of the angle of each sphere, and its z. The spheres are numbered in the order of z. Room for eight more.
     places: Arc<Columns>,
     /// cos and sin of 2 pi z/lambda of each, for a wave towards +z.
     phases: Arc<[(f64, f64)]>,

@@ -206,7 +206,7 @@ impl Foot {
     }
 }
 
-/// A distance so short that its direction is that of the normal of the curve \[d\].
+/// Below this distance \[d\] the direction to the curve is the normal of the curve.
 const NEAR: f64 = 1e-9;
 
 /// The place between two where the slope goes from below 0 to above, by the Illinois form of the rule of false position.

@@ -36,7 +36,7 @@ const ANGULAR_VELOCITY: &str = "log/particles/angular_velocity";
 const TYPES: &str = "particles/types";
 const TYPE_NUMBERS: &str = "particles/typeid";
 const DIAMETER: &str = "particles/diameter";
-/// What names of logged values begin with.
+/// Beginning of the names of logged values.
 const LOG: &str = "log/";
 /// The logged time.
 const TIME: &str = "time";

@@ -104,7 +104,7 @@ impl GsdReader {
         self.lost
     }
 
-    /// A logged value of a frame, `time` included, without the rest of the frame; `None` where there is none of that name.
+    /// A logged value of a frame, or its `time`, without the rest of the frame; `None` where the frame has no such value.
     ///
     /// # Errors
     /// As [`GsdReader::frame`].
@@ -195,7 +195,7 @@ impl GsdReader {
         Ok(names.map(before_zero).collect())
     }
 
-    /// What was logged but time and what belongs to the particles.
+    /// The logged values, except for time and the values of particles.
     fn values(&mut self, frame: usize) -> Result<Vec<(Cow<'static, str>, f64)>, FormatError> {
         let names = self.names.iter().filter_map(|name| name.strip_prefix(LOG));
         let logged = names.filter(|name| *name != TIME && !name.contains('/'));

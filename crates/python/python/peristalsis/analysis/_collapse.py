@@ -331,11 +331,11 @@ class Collapse:
         Parameters
         ----------
         found : CollapseResult
-            What `fit` of these curves answered.
+            The result of `fit` for these curves.
         claimed : sequence of float or None
             Values claimed, in the order of the scaling; None leaves a parameter free.
         steps, known
-            Those of the fit.
+            As of `fit`.
 
         Returns
         -------
@@ -370,7 +370,7 @@ class Collapse:
         Parameters
         ----------
         parameters : sequence of float
-            Those of the scaling, in its order.
+            Parameters of the scaling, in its order.
 
         Returns
         -------
@@ -401,7 +401,7 @@ class Collapse:
         Parameters
         ----------
         parameters : sequence of float
-            Those of the scaling, in its order.
+            Parameters of the scaling, in its order.
 
         Returns
         -------

@@ -28,7 +28,7 @@ class LawEvidence:
     akaike : float
         Akaike's criterion 2 p - 2 ln L.
     excess : float
-        Akaike's criterion less that of the best law: beyond some 10 the law has next to no support.
+        Akaike's criterion minus the criterion of the best law: beyond some 10 the law has next to no support.
     weight : float
         Akaike weight exp(-excess/2) over the sum of all laws compared: how probable it is to be the nearest of them.
     critical_width : float | None

@@ -250,7 +250,7 @@ def fit_law_to_nearest(
 ) -> list[NearestFit]:
     """A law of divergence through the values at the k largest widths, for every k: the exponent against the window.
 
-    An exponent that moves with the window beyond its error is an effective one, that of the range and not of w_c. The fits
+    An exponent that moves with the window by more than its error describes the window, not w_c. The fits
     share their values and do not scatter independently.
 
     Parameters
