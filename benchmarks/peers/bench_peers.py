@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Times our program and LAMMPS in turn, on the same work, each on one core."""
+"""Times our program and LAMMPS in turn, on the same work, each on one core, then each on all."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from pathlib import Path
 import report
 from cases import CASES, Case
 from lammps_peer import REQUIREMENTS, Lammps, set_up, steps_per_period
-from measurement import BenchmarkError, Measurement, Stretch, core_to_pin
+from measurement import BenchmarkError, Cores, Measurement, Stretch, all_cores, one_core
 from own_program import OwnProgram
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -45,11 +45,14 @@ def _twentieths(periods: float) -> float:
     return float(math.ceil(periods)) if periods > 2 else math.ceil(periods * 20) / 20
 
 
-def compare(case: Case, lammps: Lammps, own: OwnProgram, rounds: int, quick: bool) -> list[report.Comparison]:
+def compare(
+    case: Case, cores: Cores, lammps: Lammps, own: OwnProgram, rounds: int, quick: bool
+) -> list[report.Comparison]:
     """All rounds of a case; each runs LAMMPS in its pair styles, then our program."""
+    lammps, own = lammps.on(cores), OwnProgram(own.binary, cores)
     configuration = own.resolved(case)
     grains, steps = configuration["resolved"]["number"] * case.copies, steps_per_period(configuration)
-    say(f"{case.description(quick)} (N = {grains})")
+    say(f"{case.description(quick)} (N = {grains}), {cores.number} core{'s' if cores.number > 1 else ''}")
     programs: list[tuple[Callable[[Stretch], Measurement], float]] = [
         (lambda stretch, pair=pair: lammps.measure(case, pair, configuration, stretch), PEER_SECONDS)
         for pair in case.pair_styles
@@ -68,7 +71,7 @@ def compare(case: Case, lammps: Lammps, own: OwnProgram, rounds: int, quick: boo
                 f"  {number}/{rounds} {timed.program:<26} {timed.speed:8.3f} M/s  {timed.seconds:6.2f} s  "
                 f"{stretch.periods:g} periods x {stretch.seeds}  J/Jmax {timed.flow_rate_ratio:.3f}"
             )
-    return [report.Comparison(case, case.description(quick), peer, measured[-1]) for peer in measured[:-1]]
+    return [report.Comparison(case, cores, case.description(quick), peer, measured[-1]) for peer in measured[:-1]]
 
 
 def say(text: str) -> None:
@@ -81,7 +84,8 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--runs", type=int, help="alternating runs of each program (default 5; 1 with --quick)")
     parser.add_argument("--quick", action="store_true", help="runs of about a second")
     parser.add_argument("--cases", nargs="+", choices=names, default=names, metavar="CASE", help=", ".join(names))
-    parser.add_argument("--core", type=int, default=0, help="core that all runs are pinned to (default 0)")
+    parser.add_argument("--core", type=int, default=0, help="the core of runs on one core (default 0)")
+    parser.add_argument("--on", choices=("one", "all", "both"), default="both", help="cores to run on (default both)")
     parser.add_argument("--program", type=Path, default=ROOT / "target" / "release" / "peristalsis")
     parser.add_argument("--folder", type=Path, default=ROOT / "target" / "peers", help="for LAMMPS and the results")
     options = parser.parse_args()
@@ -93,9 +97,9 @@ def arguments() -> argparse.Namespace:
 
 def main() -> None:
     options = arguments()
-    core = core_to_pin(options.core)
-    if core is None:
-        say("taskset is missing: runs are not pinned to a core")
+    one, every = one_core(options.core), all_cores()
+    if one.pinned is None:
+        say("taskset is missing: runs are not pinned to cores")
     folder = options.folder.resolve()
     if not options.program.is_file():
         raise BenchmarkError(f"{options.program} is missing: cargo build --release -p peristalsis")
@@ -103,14 +107,18 @@ def main() -> None:
     scratch = folder / "scratch"
     scratch.mkdir(parents=True, exist_ok=True)
     # A copy: a build that goes on beside us must not change what is timed.
-    own = OwnProgram(Path(shutil.copy2(options.program, scratch / "peristalsis")), core)
-    lammps = Lammps(environment, core, scratch)
+    own = OwnProgram(Path(shutil.copy2(options.program, scratch / "peristalsis")), one)
+    lammps = Lammps(environment, one, scratch)
     machine = report.machine()
     comparisons: list[report.Comparison] = []
     try:
         for case in CASES:
-            if case.name in options.cases:
-                comparisons += compare(case, lammps, own, options.runs, options.quick)
+            if case.name not in options.cases:
+                continue
+            if options.on != "all":
+                comparisons += compare(case, one, lammps, own, options.runs, options.quick)
+            if options.on != "one" and case.shared_out and every.number > 1:
+                comparisons += compare(case, every, lammps, own, options.runs, options.quick)
     finally:
         program_hash = hashlib.sha256(own.binary.read_bytes()).hexdigest()
         shutil.rmtree(scratch)
@@ -126,8 +134,8 @@ def main() -> None:
         "peristalsis_sha256": program_hash,
         "python": sys.version.split()[0],
     }
-    table = report.markdown(comparisons, versions, machine, core is not None)
-    how = {"runs": options.runs, "quick": options.quick, "cases": options.cases, "core": core}
+    table = report.markdown(comparisons, versions, machine)
+    how = {"runs": options.runs, "quick": options.quick, "cases": options.cases, "on": options.on, "core": options.core}
     (folder / "table.md").write_text(table, encoding="utf-8")
     (folder / "table.json").write_text(report.record(comparisons, versions, machine, how), encoding="utf-8")
     print(table, end="")

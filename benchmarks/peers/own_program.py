@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from cases import Case
-from measurement import Measurement, Stretch, run_on_one_core
+from measurement import Cores, Measurement, Stretch
 
 # Of a summary.
 KEPT = ("version", "revision", "seed", "steps", "seconds", "grain_steps_per_second", "escaped", "largest_overlap")
@@ -19,10 +19,10 @@ KEPT = ("version", "revision", "seed", "steps", "seconds", "grain_steps_per_seco
 
 @dataclass(frozen=True)
 class OwnProgram:
-    """The binary, and the core that it may use."""
+    """The binary, and the cores that it may use."""
 
     binary: Path
-    core: int | None
+    cores: Cores
 
     def measure(self, case: Case, stretch: Stretch) -> Measurement:
         """Seconds are those of engine and observables: packing, tables and figures are not counted."""
@@ -48,10 +48,11 @@ class OwnProgram:
         with tempfile.TemporaryDirectory() as scratch:
             folder = Path(scratch) / "run"
             command = [str(self.binary), "run", "--preset", case.preset, "--json", "--csv", "--quiet", "--out", str(folder)]
+            command += ["--threads", str(self.cores.number)]
             values = case.settings | (settings or {}) | {"run.periods": periods, "run.seed": seed}
             for key, value in values.items():
                 command += ["--set", f"{key}={value}"]
-            summary = json.loads(run_on_one_core(command, self.core))
+            summary = json.loads(self.cores.run(command))
             with (folder / "timeseries.csv").open(encoding="utf-8", newline="") as table:
                 ratios = [float(row["flow_rate_ratio"]) for row in csv.DictReader(table)]
             configuration = tomllib.loads((folder / "config.toml").read_text(encoding="utf-8"))

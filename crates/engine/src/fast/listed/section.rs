@@ -1,6 +1,6 @@
-//! Sections of the tube, for threads to share: each works out every contact of its own spheres.
+//! Sections of the tube, for threads to share: each computes every contact of its own spheres.
 //!
-//! A contact across a border is worked out on both sides, with the same answer; the section that holds its row of the list
+//! A contact across a border is computed on both sides, with the same result. The section that holds its row of the list
 //! counts it.
 
 use core::ops::Range;
@@ -58,8 +58,8 @@ pub(super) struct Shares {
     pub(super) offers: Vec<Offer>,
     /// The section of each sphere, by its number.
     pub(super) section_of: Vec<u16>,
-    /// Grains in each slice of the tube, and the work that they make.
-    work: Vec<usize>,
+    /// Room: of each slice of the tube the work that its spheres make, then its section.
+    slices: Vec<usize>,
     /// Room: the place of the next sphere of each section.
     next: Vec<usize>,
     /// Pairs across borders since the spheres were shared out: at first, and now.
@@ -172,25 +172,24 @@ impl Shares {
             let along = bodies.position[grain].z / wall.length();
             ((along * slices as f64) as usize).min(slices - 1)
         };
-        self.work.clear();
-        self.work.resize(slices, PAIRS_OF_A_WALL_SPHERE * per_ring);
+        self.slices.clear();
+        self.slices.resize(slices, PAIRS_OF_A_WALL_SPHERE * per_ring);
         for grain in 0..grains {
             let pairs = if grain < list.rows() {
                 list.range(grain).len()
             } else {
                 0
             };
-            self.work[slice_of(grain)] += PAIRS_OF_A_GRAIN + pairs;
+            self.slices[slice_of(grain)] += PAIRS_OF_A_GRAIN + pairs;
         }
-        // Of each slice, its section.
-        let whole = self.work.iter().sum::<usize>().max(1);
+        let whole = self.slices.iter().sum::<usize>().max(1);
         let mut before = 0;
-        for work in &mut self.work {
+        for work in &mut self.slices {
             let section = before * sections / whole;
             before += *work;
             *work = section.min(sections - 1);
         }
-        let section_of_slice = &self.work[..];
+        let section_of_slice = &self.slices[..];
         self.section_of.clear();
         self.section_of
             .extend((0..grains).map(|grain| section_of_slice[slice_of(grain)] as u16));
