@@ -185,12 +185,14 @@ impl Grid {
         rule: &PairRule<'_, F>,
         skin: f64,
     ) -> Self {
-        let largest_diameter = rule.diameter.iter().copied().fold(0.0, f64::max);
+        // Comparisons, since `f64::max` looks for NaN as well.
+        let larger = |a: f64, b: f64| if b > a { b } else { a };
+        let largest_diameter = rule.diameter.iter().copied().fold(0.0, larger);
         let cutoff = largest_diameter + skin;
         // Spheres that fly away must not stretch the grid without bound.
         let farthest = position
             .iter()
-            .fold(0.0_f64, |far, p| far.max(p.x.abs()).max(p.y.abs()));
+            .fold(0.0, |far, p| larger(larger(far, p.x.abs()), p.y.abs()));
         let usual_half_width = rule.half_width + cutoff;
         let half_width = farthest.min(usual_half_width).max(0.5 * cutoff);
         // Never many more cells than spheres.
