@@ -271,7 +271,8 @@ pub(crate) fn chart(
             panels.push(collapsed.panel(claimed.exponents, &title, claimed_labels, slope));
         }
         let best = collapsed.exponents().map(|exponent| exponent.value);
-        let title = format!("{of}, {} and {}", number(best[0], 2), number(best[1], 2));
+        let [a, b] = best.map(|exponent| number(exponent, 2));
+        let title = format!("{of}, *a* = {a}, *b* = {b}");
         let labels = ["(*w*_{c} − *w*)/*ε̇*^{*b*}", best_label];
         panels.push(collapsed.panel(best, &title, labels, slope));
     }

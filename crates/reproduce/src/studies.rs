@@ -137,6 +137,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("small-strain-rate-fine"),
     study!("roughness"),
     study!("walls"),
+    study!("walls-dense"),
     study!("walls-drawn"),
     study!("walls-sought"),
     study!("restitution"),

@@ -20,6 +20,8 @@ struct Kind<'a> {
     /// J/Jmax just beyond the jump, and [`BELOW_THE_JUMP`].
     slow_flow: Uncertain,
     fast_flow: Uncertain,
+    /// Whether J/Jmax comes near 1 at some width below the jump.
+    comes_near: bool,
 }
 
 impl<'a> AtRate<'a> for Kind<'a> {
@@ -39,7 +41,9 @@ impl<'a> AtRate<'a> for Kind<'a> {
         };
         let mut points = branch.points.iter();
         let is_below = |point: &&Point<'_>| point.control <= before - BELOW_THE_JUMP;
+        let is_near = |point: &Point<'_>| point.control <= before && point.flow.value >= NEAR_ONE;
         Some(Self {
+            comes_near: points.clone().any(is_near),
             runs: rows.len(),
             slow: fraction(true),
             fast: fraction(false),
@@ -55,12 +59,21 @@ impl<'a> AtRate<'a> for Kind<'a> {
 }
 
 impl Kind<'_> {
-    fn holds(&self) -> bool {
+    /// Whether there are two kinds, whatever the fast flow is.
+    fn has_two(&self) -> bool {
         self.branch.jumps()
             && self.slow >= NEARLY_ALL
             && self.fast >= NEARLY_ALL
             && self.slow_flow.value < SLOW
-            && self.fast_flow.value >= NEAR_ONE
+    }
+
+    fn holds(&self) -> bool {
+        self.has_two() && self.fast_flow.value >= NEAR_ONE
+    }
+
+    /// Whether only the distance decides: the flow comes near J_max, but farther below the jump.
+    fn holds_farther(&self) -> bool {
+        self.has_two() && self.comes_near && !self.holds()
     }
 
     fn row(wall: &str, one: &Shown<Self>) -> Vec<String> {
@@ -82,8 +95,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Kind<'_>>::all(evidence)?;
     let (mut draft, mut parts, mut rows) = (Draft::of(PROSE), Vec::new(), Vec::new());
+    let mut farther = Vec::new();
     for one in &walls {
         let rates = one.rates(|kind| Some(kind.holds()));
+        let those = one.tight().filter(|kind| kind.found.holds_farther());
+        let those = listed(those.map(|kind| kind.strain_rate));
+        if !those.is_empty() {
+            farther.push(PROSE.text("place", values!(wall = one.name, those)));
+        }
         let count = PROSE.text("count", values!(count = rates.count()));
         parts.push(one.part(rates.hold(), count, rates.in_words()));
         rows.extend(one.all.iter().map(|kind| Kind::row(&one.name, kind)));
@@ -102,6 +121,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.table("kinds", values!(below), rows);
     let periods = walls.iter().map(|one| one.periods).fold(0.0, f64::max);
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
+    if !farther.is_empty() {
+        let places = farther.join("; ");
+        draft.weakness("farther", values!(below, near, places));
+    }
     in_time(&mut draft, evidence.study("flow-in-time")?)?;
     draft.finding.figures.push(snapshots()?);
     Ok(draft.judged(judgement, &summary))

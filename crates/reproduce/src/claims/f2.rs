@@ -31,6 +31,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if sensitivity.is_empty() {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
+    poor_fits(&mut draft, &walls);
     let summary = PROSE.text("summary", &[]);
     let (window, worse, near) = (WINDOW, WORSE, NEAR);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(window, worse, near));
@@ -41,7 +42,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let chart = grid(2, walls.iter().filter_map(times))
         .share_y()
         .colour_scale(rate_colours(lines.map(|line| line.strain_rate)));
-    draft.chart("transition-times", &[], chart)?;
+    draft.chart("transition-times", values!(resolved = RESOLVED), chart)?;
     Ok(draft.judged(judgement, &summary))
 }
 
@@ -59,9 +60,34 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
     let power = sum(|near| near.curved.and(near.power).map(|fit| fit.chi_squared));
     let (curved, power) = (number(curved, 1), number(power, 1));
     let number = PROSE.text("number", values!(exponent = cell(mean)));
+    let both = one.near().filter_map(|near| near.curved.and(near.power));
+    let freedom: usize = both.map(|fit| fit.degrees_of_freedom).sum();
     let words = rates.in_words();
-    let why = PROSE.text("why", values!(words, curved, power));
+    let why = PROSE.text("why", values!(words, curved, power, freedom));
+    if rates.hold() == Some(true) && mean.is_some_and(|mean| agrees(&mean) == Some(false)) {
+        let (count, exponent) = (rates.count(), cell(mean));
+        draft.weakness("led", values!(wall, count, exponent));
+    }
     one.part(rates.hold(), number, why)
+}
+
+/// How many fits of either law the data exclude: a law can be the better one and still not be the whole truth.
+fn poor_fits(draft: &mut Draft, walls: &[OnWall<Line<'_>>]) {
+    let of = |probability: fn(&Near) -> Option<f64>| {
+        let known: Vec<f64> = walls
+            .iter()
+            .flat_map(OnWall::near)
+            .filter_map(probability)
+            .collect();
+        let poor = known.iter().filter(|chance| **chance < BY_CHANCE).count();
+        (poor, known.len())
+    };
+    let (curved, all) = of(|near| near.curved.map(|fit| fit.probability));
+    let (power, of_power) = of(|near| near.power.map(|fit| fit.probability));
+    if curved + power > 0 {
+        let chance = number(100.0 * BY_CHANCE, 0);
+        draft.weakness("poor fits", values!(curved, all, power, of_power, chance));
+    }
 }
 
 /// The laws next to w_c, each with its goodness.
@@ -149,8 +175,10 @@ fn times(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
             };
             (one.width, time.scaled(line.strain_rate))
         };
-        let times: Vec<(f64, Uncertain)> = line.ensembles.iter().map(time).collect();
-        let limits: Vec<bool> = line.ensembles.iter().map(|one| !seen(one)).collect();
+        let shown = |one: &&WidthEnsemble| !seen(one) || line.resolves(one, RESOLVED);
+        let shown = || line.ensembles.iter().filter(shown);
+        let times: Vec<(f64, Uncertain)> = shown().map(time).collect();
+        let limits: Vec<bool> = shown().map(|one| !seen(one)).collect();
         let Some(points) = points("", times.iter().copied()) else {
             continue;
         };

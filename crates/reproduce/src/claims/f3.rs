@@ -13,11 +13,38 @@ pub(super) const CLAIM: Claim = Claim::new("F3", PROSE, TRANSITIONS, examine);
 const EXPONENTS: [f64; 2] = [3.5, 1.5];
 pub(super) const AMPLITUDE: f64 = EXPONENTS[1] - EXPONENTS[0];
 
+/// Distances from w_c, over epsdot^(3/2), at which the power of tau (w_c − w) is asked for, farthest first: the source's laws
+/// are for distances about 1.
+const DISTANCES: [f64; 6] = [16.0, 8.0, 4.0, 2.0, 1.0, 0.5];
+
+/// The power of the strain rate in tau (w_c − w) where the distance over epsdot^(3/2) is this, within a factor of 2^(1/2).
+fn power_at(one: &OnWall<Line<'_>>, distance: f64) -> Option<Uncertain> {
+    let amplitude = |line: &Line<'_>| {
+        let critical = line.near.as_ref()?.critical_width()?;
+        let apart = |one: &WidthEnsemble| {
+            let reduced = (critical.value - one.width) * line.strain_rate.powf(-1.5);
+            (reduced / distance).log2().abs()
+        };
+        let seen = |one: &&WidthEnsemble| one.observed >= one.censored && apart(one) <= 0.5;
+        let those = line.ensembles.iter().filter(seen);
+        let nearest = those.min_by(|one, other| apart(one).total_cmp(&apart(other)))?;
+        let (mean, width) = (nearest.fit?.mean, critical.value - nearest.width);
+        let error = (mean.error * width).hypot(mean.value * critical.error);
+        Some((
+            line.strain_rate,
+            Uncertain::normal(mean.value * width, error),
+        ))
+    };
+    let known = one.tight().filter_map(|shown| amplitude(&shown.found));
+    power_of_rate(&known.collect::<Vec<_>>())
+}
+
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let mut found: Vec<(String, Collapsed)> = Vec::new();
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut amplitudes) = (Vec::new(), Vec::new());
+    let (mut windows, mut powers) = (Vec::new(), Vec::new());
     for one in OnWall::<Line<'_>>::all(evidence)? {
         let mean = |ensemble: &WidthEnsemble| Some(ensemble.fit?.mean);
         let collapsed = collapse(&one, EXPONENTS, mean);
@@ -30,6 +57,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             vec![wall.clone(), number(*rate, 3), found.to_string()]
         };
         rows.extend(known.iter().map(row));
+        let at = DISTANCES.map(|distance| power_at(&one, distance));
+        windows.push([vec![wall.clone()], at.map(cell).to_vec()].concat());
+        powers.extend(at.into_iter().flatten().map(|power| power.value));
         let words = PROSE.text("number", values!(power = cell(power)));
         let why = cell_of(collapsed.as_ref(), |collapsed| {
             let (found, chance) = (collapsed.in_words(), collapsed.chance());
@@ -48,7 +78,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
     let summary = PROSE.text("summary", &[]);
+    if let Some((least, most)) = ends(powers.into_iter()) {
+        let [nearest, farthest] = [DISTANCES[DISTANCES.len() - 1], DISTANCES[0]];
+        let [least, most] = [least, most].map(|power| number(power, 1));
+        draft.paragraph("everywhere", values!(nearest, farthest, least, most));
+    }
     draft.table("amplitudes", &[], rows);
+    draft.table("windows", &[], windows);
     for (name, collapsed) in &found {
         let of = format!("wall {name}");
         let exponents = collapsed.quantities(&of, ["*a*", "*b*"]);

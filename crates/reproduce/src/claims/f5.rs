@@ -252,11 +252,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.table("peaks", &[], rows);
     draft.chart("second-moment-peak", &[], against_distance(&walls))?;
-    let middle = walls
-        .iter()
-        .filter_map(|one| one.all.get(one.all.len() / 2));
-    if let Some(shown) = middle.into_iter().next() {
-        draft.chart("second-moment-in-time", &[], in_time(&shown.found))?;
+    let first = walls.first();
+    if let Some((one, shown)) = first.and_then(|one| Some((one, one.all.get(one.all.len() / 2)?))) {
+        let wall = &one.name;
+        draft.chart("second-moment-in-time", &[], in_time(wall, &shown.found))?;
     }
     for (one, found) in walls.iter().filter_map(|one| Some((one, scaling(one)?))) {
         let of = format!("peak of the second moment, wall {}", one.name);
@@ -340,15 +339,18 @@ fn against_distance(walls: &[OnWall<Moments>]) -> ChartFigure {
         .colour_scale(rate_colours(rates))
 }
 
-fn in_time(found: &Moments) -> ChartFigure {
+/// The times span orders of magnitude; what happens before the first transition is nothing.
+fn in_time(wall: &str, found: &Moments) -> ChartFigure {
     let courses = found.rising().into_iter().map(|moment| {
-        let (time, value): (Vec<f64>, Vec<f64>) = moment.course.iter().copied().unzip();
+        let after = moment.course.iter().copied().filter(|one| one.0 > 0.0);
+        let (time, value): (Vec<f64>, Vec<f64>) = after.unzip();
         Curve::new("", &time, &value)
             .stepped()
             .tint(Tint::Value(moment.width))
     });
     let panel = panel(Axis::Period, Axis::FlowRateMoment)
-        .title(&format!("*ε̇* = {}", found.strain_rate))
+        .x_scale(Scale::Logarithmic)
+        .title(&format!("{wall}, *ε̇* = {}", found.strain_rate))
         .with_all(courses);
     let widths = found.rising().into_iter().map(|moment| moment.width);
     let otherwise = found.moments.first().map_or(2.5, |moment| moment.width);

@@ -53,6 +53,13 @@ fn straight(critical: &Critical) -> Option<ScatteredLine> {
     (rate.len() >= LEAST_RATES).then_some(line)
 }
 
+/// As the source has it: least squares through the w_c of its straight lines of 1/tau, all alike.
+fn as_the_source(one: &OnWall<Line<'_>>) -> Option<ScatteredLine> {
+    let critical = at_rates(one.near(), |near| Some(near.straight?.critical_width));
+    let [rate, width, _] = columns(critical, 0.0);
+    fit_line_to_scatter(&rate, &width, &vec![0.0; rate.len()]).ok()
+}
+
 /// Whether the source's slope lies in the interval of 95 per cent; `None` where that is so wide that it says little.
 fn has_the_slope(line: &ScatteredLine) -> Option<bool> {
     let interval = line.line.slope.interval_95;
@@ -75,7 +82,10 @@ fn part(
     }
     let linearity = line.and_then(|line| line.linearity);
     let (rates, straight) = (rates_in_words(one), cell_of(linearity, probability));
-    let why = PROSE.text("why", values!(rates, straight));
+    let way = as_the_source(one);
+    let of_source = cell(way.map(|line| line.line.slope));
+    let explained = cell_of(way, |line| number(line.determination, 3));
+    let why = PROSE.text("why", values!(rates, straight, of_source, explained));
     let is_straight = linearity.map(|chance| chance >= BY_CHANCE);
     let holds = all_hold(&[is_straight, line.and_then(has_the_slope)]);
     let slope = line.map(|line| line.line.slope);

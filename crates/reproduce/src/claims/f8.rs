@@ -222,11 +222,10 @@ fn panels_of(wall: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {
             .iter()
             .filter_map(|density| Some((density.fraction, value(density)?)))
             .filter(|(_, one)| one.error.is_finite());
-        let panel = ChartPanel::new(&label(Axis::VolumeFraction), name);
+        let panel = ChartPanel::new(&label(Axis::VolumeFraction), name).x_range(0.0..=0.7);
         match points("", known) {
             Some(points) => panel.with(points),
             None => panel
-                .x_range(0.0..=0.7)
                 .y_range(0.0..=2.0)
                 .with(Note::corner(Corner::TopLeft, "too few transitions")),
         }
@@ -234,6 +233,7 @@ fn panels_of(wall: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {
     [
         flow,
         against(&label(Axis::CriticalWidth), &|density| density.critical),
-        against("exponent, *α*", &|density| density.exponent()),
+        against("exponent, *α*", &|density| density.exponent())
+            .with(Reference::horizontal(EXPONENT)),
     ]
 }

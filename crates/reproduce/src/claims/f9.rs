@@ -67,8 +67,13 @@ fn choose(n: u32, k: u32) -> f64 {
 
 /// Whether a fast flow is no jam: grains that coast without contacts, or in a straight tube, which no wave can drive.
 fn coasts(row: &Row<'_>, threshold: f64) -> bool {
-    let is_straight = row.width() >= 2.0 * row.radius() - 1e-9;
-    row.flow_rate_ratio() > threshold && (is_straight || row.number("contacts") < LEAST_CONTACTS)
+    let is_free = is_straight(row) || row.number("contacts") < LEAST_CONTACTS;
+    row.flow_rate_ratio() > threshold && is_free
+}
+
+/// Whether no wave runs along the tube.
+fn is_straight(row: &Row<'_>) -> bool {
+    row.width() >= 2.0 * row.radius() - 1e-9
 }
 
 /// Both flows at one strain rate.
@@ -199,10 +204,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(contacts, chance, next));
     draft.table("loops", &[], rows);
     of_dense_grains(&mut draft, evidence.study("dense-jams")?.rows());
-    let rows = lifetimes(evidence.study("jam-lifetime")?.rows());
-    if !rows.is_empty() {
-        draft.table("lifetimes", &[], rows);
-    }
+    of_lifetimes(&mut draft, evidence.study("jam-lifetime")?.rows());
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     let panels: Vec<ChartPanel> = walls.iter().filter_map(widest).collect();
     if !panels.is_empty() {
@@ -306,30 +308,82 @@ fn of_dense_grains(draft: &mut Draft, rows: Vec<Row<'_>>) {
     draft.table("dense", &[], found.iter().map(Dense::row));
 }
 
-/// How long jams last in tubes too wide for them.
-fn lifetimes(rows: Vec<Row<'_>>) -> Vec<Vec<String>> {
-    let jammed = rows.into_iter().filter(|row| row.start() == Start::Jammed);
-    let key = |row: &Row<'_>| (row.lattice(), row.strain_rate(), row.width());
-    let lifetime = |((lattice, rate, width), group): ((Lattice, f64, f64), Vec<Row<'_>>)| {
-        let transitions: Vec<Transition> = group.iter().map(Row::transition).collect();
+/// Jams in one tube too wide for them.
+struct Lifetime {
+    lattice: Lattice,
+    strain_rate: f64,
+    width: f64,
+    /// Jams that broke up, and all of them.
+    ended: [usize; 2],
+    /// Mean number of periods until then, the others counted as censored; `None` where none broke up.
+    mean: Option<Uncertain>,
+    /// For how many periods they were watched.
+    watched: f64,
+    /// J/Jmax at the end.
+    flow: Uncertain,
+}
+
+impl Lifetime {
+    fn of(rows: &[Row<'_>]) -> Self {
+        let first = &rows[0];
+        let transitions: Vec<Transition> = rows.iter().map(Row::transition).collect();
         let ended = transitions.iter().filter(|one| one.observed().is_some());
-        // Runs that did not end count with the time that they were watched.
-        let lifetime = fit_lifetime(Family::Gamma, &transitions)
+        let fit = fit_lifetime(Family::Gamma, &transitions)
             .or_else(|_| fit_lifetime(Family::Exponential, &transitions));
-        let ratio = scattered(&group, Row::flow_rate_ratio);
+        Self {
+            lattice: first.lattice(),
+            strain_rate: first.strain_rate(),
+            width: first.width(),
+            ended: [ended.count(), rows.len()],
+            mean: fit.ok().map(|fit| fit.mean.scaled(first.strain_rate())),
+            watched: longest(rows),
+            flow: scattered(rows, Row::flow_rate_ratio),
+        }
+    }
+
+    fn row(&self) -> Vec<String> {
+        let [ended, all] = self.ended;
+        let lasting = || format!("> {}", number(self.watched, 0));
         vec![
-            format!("{} × {}", lattice.spheres_per_ring, lattice.rings_per_wave),
-            number(rate, 3),
-            number(width, 2),
-            format!("{} of {}", ended.count(), group.len()),
-            lifetime.map_or_else(
-                |_| format!("> {}", number(group[0].time() * rate, 0)),
-                |fit| with_error(fit.mean.value * rate, fit.mean.error * rate),
-            ),
-            with_error(ratio.value, ratio.error),
+            wall_name(self.lattice, STAGGERED),
+            number(self.strain_rate, 3),
+            number(self.width, 2),
+            format!("{ended} of {all}"),
+            self.mean.map_or_else(lasting, |mean| mean.to_string()),
+            self.flow.to_string(),
         ]
-    };
-    grouped(jammed, key).into_iter().map(lifetime).collect()
+    }
+
+    /// Where it broke up, and after how long.
+    fn in_words(&self) -> String {
+        let [ended, all] = self.ended;
+        let (wall, rate, width) = (
+            wall_name(self.lattice, STAGGERED),
+            self.strain_rate,
+            self.width,
+        );
+        let time = cell(self.mean);
+        PROSE.text("broken", values!(ended, all, wall, rate, width, time))
+    }
+}
+
+/// How long jams last in tubes too wide for them. In a straight tube there are none.
+fn of_lifetimes(draft: &mut Draft, mut rows: Vec<Row<'_>>) {
+    rows.retain(|row| row.start() == Start::Jammed && !is_straight(row));
+    let key = |row: &Row<'_>| (row.lattice(), row.strain_rate(), row.width());
+    let groups = grouped(rows, key).into_iter();
+    let found: Vec<Lifetime> = groups.map(|(_, rows)| Lifetime::of(&rows)).collect();
+    let watched = found.iter().map(|one| one.watched).fold(0.0, f64::max);
+    let broken = found.iter().filter(|one| one.ended[0] > 0);
+    let broken: Vec<String> = broken.map(Lifetime::in_words).collect();
+    if found.is_empty() {
+        return;
+    }
+    if !broken.is_empty() {
+        let (broken, tubes) = (broken.join("; "), found.len());
+        draft.paragraph("lifetimes", values!(watched, tubes, broken));
+    }
+    draft.table("lifetimes", &[], found.iter().map(Lifetime::row));
 }
 
 /// The widest window with both flows on a wall.

@@ -11,6 +11,7 @@ const PROSE: Prose = Prose::new(include_str!("q2.md"));
 const STUDIES: &[&str] = &[
     "roughness",
     "walls",
+    "walls-dense",
     "walls-drawn",
     "walls-sought",
     "wavelength",
@@ -109,7 +110,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut waves = evidence.study("wavelength")?.rows();
     waves.retain(of_one_speed);
     let mut others = evidence.study("walls")?.rows();
-    for study in ["walls-drawn", "walls-sought"] {
+    for study in ["walls-dense", "walls-drawn", "walls-sought"] {
         others.extend(evidence.study(study)?.rows());
     }
     candidates(&mut draft, others, &waves);
@@ -118,8 +119,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
 }
 
-/// Waves in the tubes of the presets.
+/// Waves in the tubes of the presets, and the volume fraction of their grains.
 const WAVES: f64 = 10.0;
+const FRACTION: f64 = 0.15;
 
 /// What one arrangement of wall spheres shows over the strain rates.
 struct Candidate {
@@ -185,14 +187,18 @@ impl Candidate {
 /// lengths.
 fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
     let groups = grouped(walls, |row| {
-        (arrangement(row), row.lattice(), row.number("waves"))
+        let of_tube = (row.number("waves"), row.volume_fraction());
+        (arrangement(row), row.lattice(), of_tube)
     });
     let found = groups
         .iter()
-        .filter_map(|((arrangement, lattice, waves), rows)| {
+        .filter_map(|((arrangement, lattice, (waves, fraction)), rows)| {
             let mut name = wall_name(*lattice, arrangement);
             if *waves != WAVES {
                 name = PROSE.text("so long", values!(name, waves));
+            }
+            if *fraction != FRACTION {
+                name = PROSE.text("so dense", values!(name, fraction));
             }
             Candidate::of(name, rows)
         });
@@ -211,18 +217,17 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
         quantities.extend(slope.map(|slope| slope.sourced(SLOPE)));
         quantities.extend(power.map(|power| power.sourced(AMPLITUDE)));
     }
-    let agreeing = |number: fn(&Candidate) -> Option<Uncertain>, source| -> String {
-        let agrees =
-            |one: &&Candidate| number(one).and_then(|ours| agrees(&ours, source)) == Some(true);
-        let names: Vec<&str> = found.iter().filter(agrees).map(|one| &*one.name).collect();
-        if names.is_empty() {
-            "none".to_owned()
-        } else {
-            names.join(", ")
+    let has_slope = |one: &Candidate| one.slope.and_then(|ours| agrees(&ours, SLOPE));
+    let has_power = |one: &Candidate| one.power.and_then(|ours| agrees(&ours, AMPLITUDE));
+    let named = |agrees: &dyn Fn(&Candidate) -> Option<bool>| -> String {
+        let those = found.iter().filter(|one| agrees(one) == Some(true));
+        let names: Vec<&str> = those.map(|one| &*one.name).collect();
+        match names.is_empty() {
+            true => "none".to_owned(),
+            false => names.join(", "),
         }
     };
-    let slopes = agreeing(|one| one.slope, SLOPE);
-    let powers = agreeing(|one| one.power, AMPLITUDE);
+    let (slopes, powers) = (named(&has_slope), named(&has_power));
     let all = found.iter().filter_map(|one| one.power);
     let [least, most] = all.fold(
         [f64::INFINITY, f64::NEG_INFINITY],
@@ -234,6 +239,9 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
     if let Some(one) = &by_length {
         let [slope, power] = [cell(one.slope), cell(one.power)];
         draft.paragraph("waves", values!(slope, power));
+    }
+    if found.iter().all(|one| has_power(one) != Some(true)) {
+        draft.paragraph("unexplained", &[]);
     }
     let (told, leaking): (Vec<_>, Vec<_>) = found
         .iter()

@@ -131,25 +131,28 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 }
 
 fn relative_variance(draft: &mut Draft, compared: &[Compared<'_>]) -> Result<()> {
-    let mut panel = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "*χ_{τ}*/*τ*^2")
-        .x_scale(Scale::Logarithmic)
-        .y_scale(Scale::Logarithmic);
-    let (mut rates, mut walls) = (Vec::new(), Vec::new());
-    for one in compared {
-        let rate = one.line.strain_rate;
-        if let Some(points) = points("", one.variances()) {
-            rates.push(rate);
-            if walls.last() != Some(&one.wall) {
-                walls.push(one.wall);
-            }
-            let points = points.series(walls.len() - 1);
-            panel = panel.with(points.tint(Tint::Value(rate)));
-        }
-    }
-    if rates.is_empty() {
+    let mut rates = Vec::new();
+    let of_wall = |here: &[Compared<'_>]| {
+        let of_rate = |one: &Compared<'_>| {
+            let points = joined("", one.variances())?;
+            rates.push(one.line.strain_rate);
+            Some((one.line.strain_rate, Some(points)))
+        };
+        let drawn: Vec<_> = here.iter().filter_map(of_rate).collect();
+        let panel = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "*χ_{τ}*/*τ*^2")
+            .x_scale(Scale::Logarithmic)
+            .y_scale(Scale::Logarithmic)
+            .title(here[0].wall);
+        (!drawn.is_empty()).then(|| panel.with_all(coloured(drawn)))
+    };
+    let walls = compared.chunk_by(|one, next| one.wall == next.wall);
+    let panels: Vec<ChartPanel> = walls.filter_map(of_wall).collect();
+    if panels.is_empty() {
         return Ok(());
     }
-    let chart = ChartFigure::new(panel).colour_scale(rate_colours(rates.into_iter()));
+    let chart = grid(2, panels)
+        .share_y()
+        .colour_scale(rate_colours(rates.into_iter()));
     draft.chart("relative-variance", &[], chart)
 }
 

@@ -10,9 +10,10 @@ use crate::report::markdown::table;
 use crate::report::markup::markdown;
 use crate::report::{Report, page};
 
-/// Numbers and cells of a table that a section shows at most; all are in the page and in `claims.json`.
+/// Numbers, and columns and cells of a table, that a section shows at most; all are in the page and in `claims.json`.
 const MOST_NUMBERS: usize = 3;
-const MOST_CELLS: usize = 55;
+const MOST_COLUMNS: usize = 7;
+const MOST_CELLS: usize = 70;
 
 /// What stands above the table.
 const OPENING: &str = include_str!("document.md");
@@ -153,7 +154,10 @@ fn section(examination: &Examination, file: Option<&str>, figures: &str) -> Stri
 /// its paragraph does not say.
 fn digest(finding: &Finding) -> Option<ReportTable> {
     let first = finding.tables.first();
-    let small = first.filter(|one| (1..=MOST_CELLS).contains(&(one.head.len() * one.rows.len())));
+    let small = first.filter(|one| {
+        let cells = one.head.len() * one.rows.len();
+        one.head.len() <= MOST_COLUMNS && (1..=MOST_CELLS).contains(&cells)
+    });
     let found = if !finding.walls.is_empty() {
         let rows = finding.walls.iter().map(|wall| {
             let verdict = wall.verdict.name().to_owned();

@@ -115,7 +115,8 @@ fn by_wall(report: &Report) -> Markup {
             section #walls {
                 h2 { "Verdict by wall" }
                 p {
-                    "A wall is named by its spheres a ring and rings a wave. The source had one tube and does not say which: a claim                     counts as reproduced where one wall or more reproduces it."
+                    "A wall is named by its spheres a ring and rings a wave. The source had one tube and does not say which: "
+                    "a claim counts as reproduced where one wall or more reproduces it."
                 }
                 div.scroll tabindex="0" role="region" aria-label="Verdict by wall" {
                     table.walls {
