@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::lanes::{LaneVector, Lanes};
+use super::lanes::{LANES, LaneVector, Lanes};
 use super::machine::Machine;
 
 /// Vectors in space, a column for each component.
@@ -11,6 +11,14 @@ pub(crate) struct Columns {
     pub(crate) x: Vec<f64>,
     pub(crate) y: Vec<f64>,
     pub(crate) z: Vec<f64>,
+}
+
+/// The first of [`Columns`] to be read: so many of each column, which the compiler then knows to be of one length.
+#[derive(Clone, Copy)]
+pub(crate) struct ColumnsRef<'a> {
+    x: &'a [f64],
+    y: &'a [f64],
+    z: &'a [f64],
 }
 
 /// A stretch of [`Columns`] to be written to.
@@ -58,11 +66,7 @@ impl Columns {
 
     #[inline(always)]
     pub(crate) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
-        LaneVector::new(
-            Lanes::load(&self.x, start),
-            Lanes::load(&self.y, start),
-            Lanes::load(&self.z, start),
-        )
+        self.first(self.x.len()).load(start)
     }
 
     #[inline(always)]
@@ -70,19 +74,55 @@ impl Columns {
         self.as_mut().store(start, vector);
     }
 
+    /// The first so many vectors.
     #[inline(always)]
-    pub(crate) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
-        let sum = self.load(start) + vector;
-        self.store(start, sum);
+    pub(crate) fn first(&self, number: usize) -> ColumnsRef<'_> {
+        ColumnsRef {
+            x: &self.x[..number],
+            y: &self.y[..number],
+            z: &self.z[..number],
+        }
     }
 
     #[inline(always)]
     pub(crate) fn as_mut(&mut self) -> ColumnsMut<'_> {
+        let number = self.x.len();
         ColumnsMut {
             x: &mut self.x,
-            y: &mut self.y,
-            z: &mut self.z,
+            y: &mut self.y[..number],
+            z: &mut self.z[..number],
         }
+    }
+}
+
+impl ColumnsRef<'_> {
+    /// Without those before `start`.
+    #[inline(always)]
+    pub(crate) fn from(self, start: usize) -> Self {
+        Self {
+            x: &self.x[start..],
+            y: &self.y[start..],
+            z: &self.z[start..],
+        }
+    }
+
+    /// Those at the given places.
+    #[inline(always)]
+    pub(crate) fn gather<M: Machine>(&self, places: &[u32; LANES]) -> LaneVector<M> {
+        LaneVector::new(
+            Lanes::gather(self.x, places),
+            Lanes::gather(self.y, places),
+            Lanes::gather(self.z, places),
+        )
+    }
+
+    #[inline(always)]
+    pub(crate) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
+        LaneVector::new(
+            Lanes::load(self.x, start),
+            Lanes::load(self.y, start),
+            Lanes::load(self.z, start),
+        )
     }
 }
 
@@ -101,5 +141,11 @@ impl ColumnsMut<'_> {
         vector.x.store(self.x, start);
         vector.y.store(self.y, start);
         vector.z.store(self.z, start);
+    }
+
+    #[inline(always)]
+    pub(crate) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
+        let sum = self.load(start) + vector;
+        self.store(start, sum);
     }
 }
