@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::lanes::{LaneVector, Lanes};
+use super::lanes::{LANES, LaneVector, Lanes};
 use super::machine::Machine;
 
 /// Vectors in space, a column for each component.
@@ -13,23 +13,12 @@ pub(crate) struct Columns {
     pub(crate) z: Vec<f64>,
 }
 
-/// A stretch of [`Columns`]. Those of one length are looked at once where they are read at one place.
+/// The first of [`Columns`] to be read: so many of each column, which the compiler then knows to be of one length.
 #[derive(Clone, Copy)]
 pub(crate) struct ColumnsRef<'a> {
     x: &'a [f64],
     y: &'a [f64],
     z: &'a [f64],
-}
-
-impl ColumnsRef<'_> {
-    #[inline(always)]
-    pub(crate) fn load<M: Machine>(self, start: usize) -> LaneVector<M> {
-        LaneVector::new(
-            Lanes::load(self.x, start),
-            Lanes::load(self.y, start),
-            Lanes::load(self.z, start),
-        )
-    }
 }
 
 /// A stretch of [`Columns`] to be written to.
@@ -77,11 +66,7 @@ impl Columns {
 
     #[inline(always)]
     pub(crate) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
-        LaneVector::new(
-            Lanes::load(&self.x, start),
-            Lanes::load(&self.y, start),
-            Lanes::load(&self.z, start),
-        )
+        self.first(self.x.len()).load(start)
     }
 
     #[inline(always)]
@@ -89,39 +74,60 @@ impl Columns {
         self.as_mut().store(start, vector);
     }
 
-    #[inline(always)]
-    pub(crate) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
-        let sum = self.load(start) + vector;
-        self.store(start, sum);
-    }
-
     /// The first so many vectors.
     #[inline(always)]
-    pub(crate) fn first(&self, length: usize) -> ColumnsRef<'_> {
+    pub(crate) fn first(&self, number: usize) -> ColumnsRef<'_> {
         ColumnsRef {
-            x: &self.x[..length],
-            y: &self.y[..length],
-            z: &self.z[..length],
+            x: &self.x[..number],
+            y: &self.y[..number],
+            z: &self.z[..number],
         }
     }
 
     /// The same, to be written to.
     #[inline(always)]
-    pub(crate) fn first_mut(&mut self, length: usize) -> ColumnsMut<'_> {
+    pub(crate) fn first_mut(&mut self, number: usize) -> ColumnsMut<'_> {
         ColumnsMut {
-            x: &mut self.x[..length],
-            y: &mut self.y[..length],
-            z: &mut self.z[..length],
+            x: &mut self.x[..number],
+            y: &mut self.y[..number],
+            z: &mut self.z[..number],
         }
     }
 
     #[inline(always)]
     pub(crate) fn as_mut(&mut self) -> ColumnsMut<'_> {
-        ColumnsMut {
-            x: &mut self.x,
-            y: &mut self.y,
-            z: &mut self.z,
+        self.first_mut(self.x.len())
+    }
+}
+
+impl ColumnsRef<'_> {
+    /// Without those before `start`.
+    #[inline(always)]
+    pub(crate) fn from(self, start: usize) -> Self {
+        Self {
+            x: &self.x[start..],
+            y: &self.y[start..],
+            z: &self.z[start..],
         }
+    }
+
+    /// Those at the given places.
+    #[inline(always)]
+    pub(crate) fn gather<M: Machine>(&self, places: &[u32; LANES]) -> LaneVector<M> {
+        LaneVector::new(
+            Lanes::gather(self.x, places),
+            Lanes::gather(self.y, places),
+            Lanes::gather(self.z, places),
+        )
+    }
+
+    #[inline(always)]
+    pub(crate) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
+        LaneVector::new(
+            Lanes::load(self.x, start),
+            Lanes::load(self.y, start),
+            Lanes::load(self.z, start),
+        )
     }
 }
 
@@ -140,5 +146,11 @@ impl ColumnsMut<'_> {
         vector.x.store(self.x, start);
         vector.y.store(self.y, start);
         vector.z.store(self.z, start);
+    }
+
+    #[inline(always)]
+    pub(crate) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
+        let sum = self.load(start) + vector;
+        self.store(start, sum);
     }
 }

@@ -81,40 +81,44 @@ impl<M: Machine> Lanes<M> {
         Self(M::load(window(slice, start)))
     }
 
+    /// The numbers of `slice` at the given places.
+    #[inline(always)]
+    pub(crate) fn gather(slice: &[f64], places: &[u32; LANES]) -> Self {
+        let mut numbers = [0.0; LANES];
+        for lane in 0..LANES {
+            numbers[lane] = slice[places[lane] as usize];
+        }
+        Self::from_array(&numbers)
+    }
+
     /// Writes the numbers into `slice` from `start` on.
     #[inline(always)]
     pub(crate) fn store(self, slice: &mut [f64], start: usize) {
         M::store(self.0, window_mut(slice, start));
     }
 
-    /// Writes the numbers of the lanes where `mask` holds into `slice` from `start` on, in order; of eight places those
-    /// behind them hold 0 or any of the numbers.
+    /// The entries of a table that each lane names.
     #[inline(always)]
-    pub(crate) fn pack(self, mask: Mask<M>, slice: &mut [f64], start: usize) {
-        M::pack(mask.to_bits(), self.0, window_mut(slice, start));
+    pub(crate) fn look_up<T>(table: &[T], places: [i32; LANES]) -> [&T; LANES] {
+        let [a, b, c, d, e, f, g, h] = places;
+        let entry = |place: i32| &table[place as u32 as usize];
+        [
+            entry(a),
+            entry(b),
+            entry(c),
+            entry(d),
+            entry(e),
+            entry(f),
+            entry(g),
+            entry(h),
+        ]
     }
 
-    /// The numbers of `slice` from `start` on, in order, one in each lane where `mask` holds, and 0 in the others.
+    /// Eight pairs turned into lanes: number k of pair l becomes lane l of numbers k.
     #[inline(always)]
-    pub(crate) fn unpack(mask: Mask<M>, slice: &[f64], start: usize) -> Self {
-        Self(M::unpack(mask.to_bits(), window(slice, start)))
-    }
-
-    /// The four numbers of `slice` that begin where each lane says; the k-th becomes numbers k.
-    #[inline(always)]
-    pub(crate) fn windows(slice: &[f64], starts: [i32; LANES]) -> [Self; 4] {
-        let [a, b, c, d, e, f, g, h] =
-            starts.map(|start| window::<4>(slice, start as u32 as usize));
-        Self::of_quads([
-            Quad::<M>::from_array(a),
-            Quad::<M>::from_array(b),
-            Quad::<M>::from_array(c),
-            Quad::<M>::from_array(d),
-            Quad::<M>::from_array(e),
-            Quad::<M>::from_array(f),
-            Quad::<M>::from_array(g),
-            Quad::<M>::from_array(h),
-        ])
+    pub(crate) fn of_pairs(pairs: [&[f64; 2]; LANES]) -> [Self; 2] {
+        let [first, second] = M::lanes_of_pairs(pairs);
+        [Self(first), Self(second)]
     }
 
     /// Eight quads turned into lanes: number k of quad l becomes lane l of numbers k.
@@ -151,10 +155,11 @@ impl<M: Machine> Lanes<M> {
         // Added to a number, this leaves no digits behind the point, and the integer in the lowest bits.
         let shift = Self::splat(6_755_399_441_055_744.0);
         let shifted = self + shift;
-        (
-            shifted - shift,
-            shifted.to_array().map(|value| value.to_bits() as i32),
-        )
+        let mut integers = [0; LANES];
+        for (integer, value) in integers.iter_mut().zip(shifted.to_array()) {
+            *integer = value.to_bits() as i32;
+        }
+        (shifted - shift, integers)
     }
 
     /// The sum of all lanes, in an order that does not depend on the machine.

@@ -173,7 +173,8 @@ impl Shares {
             ((along * slices as f64) as usize).min(slices - 1)
         };
         self.slices.clear();
-        self.slices.resize(slices, PAIRS_OF_A_WALL_SPHERE * per_ring);
+        self.slices
+            .resize(slices, PAIRS_OF_A_WALL_SPHERE * per_ring);
         for grain in 0..grains {
             let pairs = if grain < list.rows() {
                 list.range(grain).len()

@@ -65,12 +65,8 @@ pub(crate) trait Machine: Arithmetic<LANES> + Default + PartialEq {
     fn at_most(a: Self::Numbers, b: Self::Numbers) -> Self::Truths;
     fn select(mask: Self::Truths, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers;
 
-    /// Writes down the numbers whose bits are set, in order; the numbers behind them are 0 or
-    /// some of the numbers.
-    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]);
-    /// The opposite: the numbers in order, one in each lane whose bit is set, and 0 in the others.
-    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers;
-
+    /// Eight pairs turned into lanes: number k of pair l becomes lane l of numbers k.
+    fn lanes_of_pairs(pairs: [&[f64; 2]; LANES]) -> [Self::Numbers; 2];
     /// Eight quads turned into lanes: number k of quad l becomes lane l of numbers k.
     fn lanes_of(quads: [Quad<Self>; LANES]) -> [Self::Numbers; 4];
     /// Lanes turned into eight quads.
@@ -79,8 +75,9 @@ pub(crate) trait Machine: Arithmetic<LANES> + Default + PartialEq {
     /// Writes down `first` + l for each set bit l, in order; the numbers behind them are arbitrary.
     #[inline(always)]
     fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]) {
-        let numbers = core::array::from_fn(|lane| first + lane as u32);
-        Self::write_chosen(bits, &numbers, to);
+        for (to, &lane) in to.iter_mut().zip(&SET_BITS[usize::from(bits)]) {
+            *to = first + u32::from(lane);
+        }
     }
 
     /// Writes down the numbers whose bits are set, in order; the numbers behind them are arbitrary.
@@ -92,6 +89,26 @@ pub(crate) trait Machine: Arithmetic<LANES> + Default + PartialEq {
             at += usize::from((bits >> lane) & 1);
         }
     }
+}
+
+/// For eight bits, those that are set, in order.
+pub(super) static SET_BITS: [[u8; LANES]; 256] = set_bits();
+
+const fn set_bits() -> [[u8; LANES]; 256] {
+    let mut all = [[0; LANES]; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut lane, mut number) = (0, 0);
+        while lane < LANES {
+            if bits >> lane & 1 == 1 {
+                all[bits][number] = lane as u8;
+                number += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    all
 }
 
 /// Four numbers in a register of a machine.

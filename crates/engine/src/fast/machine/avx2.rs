@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 use core::ops::{BitAnd, BitOr, Not};
 
-use super::arithmetic::{Arithmetic, LANES, Machine, Truths};
+use super::arithmetic::{Arithmetic, LANES, Machine, SET_BITS, Truths};
 
 /// AVX2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -119,10 +119,7 @@ impl Machine for Avx2 {
 
     #[inline(always)]
     fn rough_reciprocal_sqrt(a: [__m256d; 2]) -> [__m256d; 2] {
-        a.map(|a| unsafe {
-            let root = _mm_sqrt_ps(_mm256_cvtpd_ps(a));
-            _mm256_cvtps_pd(_mm_div_ps(_mm_set1_ps(1.0), root))
-        })
+        [rough_reciprocal_sqrt(a[0]), rough_reciprocal_sqrt(a[1])]
     }
 
     #[inline(always)]
@@ -151,29 +148,24 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn pack(bits: u8, [low, high]: [__m256d; 2], to: &mut [f64; LANES]) {
-        let (bits_low, bits_high) = (usize::from(bits & 15), usize::from(bits >> 4));
+    fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]) {
         unsafe {
-            _mm256_storeu_pd(to.as_mut_ptr(), permuted(low, &PACK[bits_low]));
-            // At most four numbers stand before the last four.
-            let behind = to.as_mut_ptr().add(bits_low.count_ones() as usize);
-            _mm256_storeu_pd(behind, permuted(high, &PACK[bits_high]));
+            let set = _mm_loadl_epi64(SET_BITS[usize::from(bits)].as_ptr().cast());
+            let numbers =
+                _mm256_add_epi32(_mm256_set1_epi32(first as i32), _mm256_cvtepu8_epi32(set));
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), numbers);
         }
     }
 
     #[inline(always)]
-    fn unpack(bits: u8, from: &[f64; LANES]) -> [__m256d; 2] {
-        let (bits_low, bits_high) = (usize::from(bits & 15), usize::from(bits >> 4));
-        let numbers = unsafe {
-            let low = _mm256_loadu_pd(from.as_ptr());
-            // At most four numbers stand before the last four.
-            let high = _mm256_loadu_pd(from.as_ptr().add(bits_low.count_ones() as usize));
+    fn lanes_of_pairs([a, b, c, d, e, f, g, h]: [&[f64; 2]; LANES]) -> [[__m256d; 2]; 2] {
+        let (ac, bd, eg, fh) = (of_two(a, c), of_two(b, d), of_two(e, g), of_two(f, h));
+        unsafe {
             [
-                permuted(low, &UNPACK[bits_low]),
-                permuted(high, &UNPACK[bits_high]),
+                [_mm256_unpacklo_pd(ac, bd), _mm256_unpacklo_pd(eg, fh)],
+                [_mm256_unpackhi_pd(ac, bd), _mm256_unpackhi_pd(eg, fh)],
             ]
-        };
-        Self::select(Halves::from_bits(bits), numbers, Self::splat(0.0))
+        }
     }
 
     #[inline(always)]
@@ -204,13 +196,14 @@ impl Truths for Halves {
     fn from_bits(bits: u8) -> Self {
         unsafe {
             let bits = _mm256_set1_epi64x(i64::from(bits));
-            let each = [
+            let (low, high) = (
                 _mm256_setr_epi64x(1, 2, 4, 8),
                 _mm256_setr_epi64x(16, 32, 64, 128),
-            ];
-            Self(each.map(|bit| {
-                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, bit), bit))
-            }))
+            );
+            Self([
+                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, low), low)),
+                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, high), high)),
+            ])
         }
     }
 
@@ -252,6 +245,22 @@ impl Not for Halves {
     }
 }
 
+#[inline(always)]
+fn rough_reciprocal_sqrt(a: __m256d) -> __m256d {
+    // SAFETY: see the module above; the instructions have been found before any of this runs.
+    unsafe {
+        let root = _mm_sqrt_ps(_mm256_cvtpd_ps(a));
+        _mm256_cvtps_pd(_mm_div_ps(_mm_set1_ps(1.0), root))
+    }
+}
+
+/// Two pairs in one register.
+#[inline(always)]
+fn of_two(a: &[f64; 2], b: &[f64; 2]) -> __m256d {
+    // SAFETY: see the module above; the instructions have been found before any of this runs.
+    unsafe { _mm256_loadu2_m128d(b.as_ptr(), a.as_ptr()) }
+}
+
 /// Rows and columns of four by four numbers exchanged.
 #[inline(always)]
 fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
@@ -266,46 +275,6 @@ fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
             _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
         ]
     }
-}
-
-/// The numbers at the given places, by halves of numbers.
-#[inline(always)]
-fn permuted(numbers: __m256d, places: &[u32; 8]) -> __m256d {
-    // SAFETY: see the module above; the instructions have been found before any of this runs.
-    unsafe {
-        let places = _mm256_loadu_si256(places.as_ptr().cast());
-        let moved = _mm256_permutevar8x32_ps(_mm256_castpd_ps(numbers), places);
-        _mm256_castps_pd(moved)
-    }
-}
-
-/// For four bits, where those of four numbers stand that are set.
-static PACK: [[u32; 8]; 16] = places(false);
-/// For four bits, where each that is set finds its number.
-static UNPACK: [[u32; 8]; 16] = places(true);
-
-const fn places(unpack: bool) -> [[u32; 8]; 16] {
-    // Where nothing is said, a number that is there.
-    let mut all = [[0, 1, 0, 1, 0, 1, 0, 1]; 16];
-    let mut bits = 0;
-    while bits < 16 {
-        let (mut lane, mut packed) = (0, 0);
-        while lane < 4 {
-            if bits >> lane & 1 == 1 {
-                let (to, from) = if unpack {
-                    (lane, packed)
-                } else {
-                    (packed, lane)
-                };
-                all[bits][2 * to] = 2 * from as u32;
-                all[bits][2 * to + 1] = 2 * from as u32 + 1;
-                packed += 1;
-            }
-            lane += 1;
-        }
-        bits += 1;
-    }
-    all
 }
 
 /// For each number of eight bits the places of those that are set, a byte each, in order.

@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 
 use super::arithmetic::{Arithmetic, LANES, Machine};
-use super::avx2::Four;
+use super::avx2::{Avx2, Four};
 
 /// AVX-512 (F, VL, DQ, BW).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,14 +77,9 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
-    fn pack(bits: u8, values: __m512d, to: &mut [f64; LANES]) {
-        // To a register and from there: straight to memory this is slow on some processors.
-        Self::store(unsafe { _mm512_maskz_compress_pd(bits, values) }, to);
-    }
-
-    #[inline(always)]
-    fn unpack(bits: u8, from: &[f64; LANES]) -> __m512d {
-        unsafe { _mm512_maskz_expand_pd(bits, Self::load(from)) }
+    fn lanes_of_pairs(pairs: [&[f64; 2]; LANES]) -> [__m512d; 2] {
+        let [firsts, seconds] = Avx2::lanes_of_pairs(pairs);
+        [both(firsts[0], firsts[1]), both(seconds[0], seconds[1])]
     }
 
     #[inline(always)]

@@ -156,23 +156,15 @@ impl<P: Pair> Machine for P {
     }
 
     #[inline(always)]
-    fn pack(bits: u8, values: [P::Two; 4], to: &mut [f64; LANES]) {
-        let mut array = [0.0; LANES];
-        <P as Arithmetic<LANES>>::store(values, &mut array);
-        Plain::pack(bits, array, to);
-    }
-
-    #[inline(always)]
-    fn unpack(bits: u8, from: &[f64; LANES]) -> [P::Two; 4] {
-        let mut at = 0;
-        let numbers = core::array::from_fn(|lane| {
-            let number = from[at & (LANES - 1)];
-            at += usize::from((bits >> lane) & 1);
-            number
-        });
-        let numbers = <P as Arithmetic<LANES>>::load(&numbers);
-        let zero = <P as Arithmetic<LANES>>::splat(0.0);
-        <P as Machine>::select(TruthsOf::from_bits(bits), numbers, zero)
+    fn lanes_of_pairs(pairs: [&[f64; 2]; LANES]) -> [[P::Two; 4]; 2] {
+        let loaded = |lane: usize| P::load(pairs[lane]);
+        let two = |pair: usize| (loaded(2 * pair), loaded(2 * pair + 1));
+        let [a, b, c, d] = [two(0), two(1), two(2), two(3)];
+        let firsts = [a, b, c, d].map(|(one, other)| P::firsts(one, other));
+        [
+            firsts,
+            [a, b, c, d].map(|(one, other)| P::seconds(one, other)),
+        ]
     }
 
     #[inline(always)]

@@ -106,23 +106,8 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn pack(bits: u8, values: [f64; LANES], to: &mut [f64; LANES]) {
-        let mut at = 0;
-        for (lane, value) in values.into_iter().enumerate() {
-            to[at & (LANES - 1)] = value;
-            at += usize::from((bits >> lane) & 1);
-        }
-    }
-
-    #[inline(always)]
-    fn unpack(bits: u8, from: &[f64; LANES]) -> [f64; LANES] {
-        let mut at = 0;
-        core::array::from_fn(|lane| {
-            let set = (bits >> lane) & 1;
-            let value = from[at & (LANES - 1)];
-            at += usize::from(set);
-            if set == 1 { value } else { 0.0 }
-        })
+    fn lanes_of_pairs(pairs: [&[f64; 2]; LANES]) -> [[f64; LANES]; 2] {
+        core::array::from_fn(|k| core::array::from_fn(|lane| pairs[lane][k]))
     }
 
     #[inline(always)]

@@ -1,18 +1,21 @@
 //! Pairs of a grain and a ring of the wall that may touch, packed: only some grains are near the wall, each with rings of
 //! its own.
 
-use crate::fast::columns::Columns;
+use crate::fast::columns::ColumnsMut;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
 
 /// How many candidates are worked out at a time.
 const MOST: usize = 512;
 
-/// Rings that a grain may touch, at most.
-pub(super) const MOST_RINGS: usize = MOST / LANES;
+/// How many eights of them.
+pub(super) const MOST_EIGHTS: usize = MOST / LANES;
+
+/// Rings that a grain may touch, at most: the candidates of a block are worked out at once.
+pub(super) const MOST_RINGS: usize = MOST_EIGHTS;
 
 /// A number for each candidate; the numbers behind them are arbitrary.
-type Column = [f64; MOST + LANES];
+pub(super) type Column = [f64; MOST];
 
 /// A vector for each candidate, by component.
 #[derive(Debug)]
@@ -32,24 +35,6 @@ impl Vectors {
         of.y.store(y, at);
         of.z.store(z, at);
     }
-
-    #[inline(always)]
-    fn pack<M: Machine>(&mut self, mask: Mask<M>, of: LaneVector<M>, at: usize) {
-        let Self([x, y, z]) = self;
-        of.x.pack(mask, x, at);
-        of.y.pack(mask, y, at);
-        of.z.pack(mask, z, at);
-    }
-
-    #[inline(always)]
-    fn unpack<M: Machine>(&self, mask: Mask<M>, at: usize) -> LaneVector<M> {
-        let Self([x, y, z]) = self;
-        LaneVector::new(
-            Lanes::unpack(mask, x, at),
-            Lanes::unpack(mask, y, at),
-            Lanes::unpack(mask, z, at),
-        )
-    }
 }
 
 /// Pairs of a grain and a ring that may touch.
@@ -59,46 +44,42 @@ impl Vectors {
 #[derive(Debug)]
 pub(super) struct Candidates {
     number: usize,
-    rounds: [Round; MOST],
-    rounds_used: usize,
-    /// Place of the grain; then its place relative to the nearest sphere of the ring: along the radius to this sphere, along
-    /// the ring, and along the tube from there. In the end the force on the grain.
+    /// Place of the grain in its tile.
+    places: [u32; MOST + LANES],
+    /// How many rings within its reach come before this one.
+    before: [f64; MOST + LANES],
+    /// Place of the grain relative to the nearest sphere of the ring: along the radius to this sphere, along the ring, and
+    /// along the tube from there.
     pub(super) position: Vectors,
-    /// Its velocity; then along the same directions.
+    /// Its velocity along the same directions.
     pub(super) velocity: Vectors,
-    /// Number of the ring, counted on beyond the ends of the tube; then its radius.
-    pub(super) ring: Column,
-    /// How fast the ring's radius grows.
+    /// Radius of the ring.
+    pub(super) radius: Column,
+    /// How fast it grows.
     pub(super) ring_velocity: Column,
     /// cos and sin of the angle of the nearest sphere, and -1 where the grain lies at a smaller angle.
     pub(super) cos: Column,
     pub(super) sin: Column,
     pub(super) side: Column,
-}
-
-/// Candidates of a block with one ring for each grain.
-#[derive(Clone, Copy, Debug, Default)]
-struct Round {
-    /// First place of the block.
-    block: u32,
-    /// Which of its lanes have such a ring.
-    bits: u8,
+    /// How many spheres of their ring each eight candidates look at.
+    pub(super) visits: [usize; MOST_EIGHTS],
 }
 
 impl Default for Candidates {
     fn default() -> Self {
-        let none = [0.0; MOST + LANES];
+        let none = [0.0; MOST];
         Self {
             number: 0,
-            rounds: [Round::default(); MOST],
-            rounds_used: 0,
+            places: [0; MOST + LANES],
+            before: [0.0; MOST + LANES],
             position: Vectors([none; 3]),
             velocity: Vectors([none; 3]),
-            ring: none,
+            radius: none,
             ring_velocity: none,
             cos: none,
             sin: none,
             side: none,
+            visits: [0; MOST_EIGHTS],
         }
     }
 }
@@ -106,7 +87,7 @@ impl Default for Candidates {
 impl Candidates {
     /// Begins anew.
     pub(super) fn clear(&mut self) {
-        (self.number, self.rounds_used) = (0, 0);
+        self.number = 0;
     }
 
     /// Whether there is room for a block whose grains may touch so many rings each.
@@ -114,28 +95,18 @@ impl Candidates {
         self.number + rings * LANES <= MOST
     }
 
-    /// Adds a ring each for some grains of the block that begins at `block`.
+    /// Adds a ring, the one behind `before` others, for some grains of the block that begins at `block` in its tile.
     #[inline(always)]
-    pub(super) fn add<M: Machine>(
-        &mut self,
-        block: usize,
-        meet: Mask<M>,
-        position: LaneVector<M>,
-        velocity: LaneVector<M>,
-        ring: Lanes<M>,
-    ) {
-        let at = self.number;
-        // One check of the bounds for all columns.
-        assert!(at <= MOST);
-        self.position.pack(meet, position, at);
-        self.velocity.pack(meet, velocity, at);
-        ring.pack(meet, &mut self.ring, at);
-        self.rounds[self.rounds_used] = Round {
-            block: block as u32,
-            bits: meet.to_bits(),
-        };
-        self.rounds_used += 1;
-        self.number = at + meet.count() as usize;
+    pub(super) fn add<M: Machine>(&mut self, block: usize, meet: Mask<M>, before: f64) {
+        let to = self.places[self.number..].first_chunk_mut();
+        meet.write_down(block as u32, to.expect("room for eight more"));
+        Lanes::<M>::splat(before).store(&mut self.before, self.number);
+        self.number += meet.count() as usize;
+    }
+
+    /// Fills the last eight up with any grain of the tile.
+    pub(super) fn fill_up(&mut self) {
+        self.places[self.number..][..LANES].fill(0);
     }
 
     /// First of each eight candidates, and the lanes that hold one.
@@ -147,22 +118,28 @@ impl Candidates {
         starts.map(move |start| (start, Mask::first(number - start)))
     }
 
-    /// Adds the forces to the forces on the grains.
+    /// Places in their tile of the grains of eight candidates, and how many rings within reach come before theirs.
     #[inline(always)]
-    pub(super) fn add_forces<M: Machine>(&self, to: &mut Columns) {
-        let mut at = 0;
-        for of_block in
-            self.rounds[..self.rounds_used].chunk_by(|one, other| one.block == other.block)
-        {
-            let block = of_block[0].block as usize;
-            let mut force = to.load::<M>(block);
-            for round in of_block {
-                let meet = Mask::from_bits(round.bits);
-                assert!(at <= MOST);
-                force += self.position.unpack(meet, at);
-                at += meet.count() as usize;
-            }
-            to.store(block, force);
+    pub(super) fn pairs<M: Machine>(&self, at: usize) -> (&[u32; LANES], Lanes<M>) {
+        let places = self.places[at..].first_chunk().expect("eight candidates");
+        (places, Lanes::load(&self.before, at))
+    }
+
+    /// Adds the forces on the grains of eight candidates to the forces on all grains of the tile.
+    #[inline(always)]
+    pub(super) fn add_forces<M: Machine>(
+        &self,
+        at: usize,
+        force: LaneVector<M>,
+        to: &mut ColumnsMut<'_>,
+    ) {
+        let (x, y, z) = (force.x.to_array(), force.y.to_array(), force.z.to_array());
+        let places = &self.places[at..self.number.min(at + LANES)];
+        for (lane, &place) in places.iter().enumerate() {
+            let place = place as usize;
+            to.x[place] += x[lane];
+            to.y[place] += y[lane];
+            to.z[place] += z[lane];
         }
     }
 }

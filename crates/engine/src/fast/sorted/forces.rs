@@ -6,9 +6,9 @@ use peristalsis_physics::contact::NormalLaw;
 use rayon::prelude::*;
 
 use super::candidates::Candidates;
-use super::pairs::{Block, PairConstants};
+use super::pairs::{Block, PairConstants, Touching};
 use super::state::Sorted;
-use super::tile::{AT_A_TIME, OF_LIGHT_WORK, OfTile, Partners, TILE, Tile};
+use super::tile::{AT_A_TIME, OF_LIGHT_WORK, OfTile, TILE, Tile};
 use super::wall::WallTable;
 use crate::fast::columns::{Columns, ColumnsMut};
 use crate::fast::lanes::LANES;
@@ -21,7 +21,7 @@ impl Sorted {
     pub(super) fn forces<N: NormalLaw, const FULL: bool>(&mut self, law: &N) -> Tally {
         let instructions = self.instructions;
         let one = |(of_tile, tile): (&mut OfTile, &Tile)| {
-            CANDIDATES.with_borrow_mut(|candidates| {
+            ROOM.with_borrow_mut(|room| {
                 instructions.run(ForcesOfTile::<N, FULL> {
                     law,
                     pairs: &self.pairs,
@@ -30,7 +30,7 @@ impl Sorted {
                     velocity: &self.velocity,
                     tile,
                     of_tile,
-                    candidates,
+                    room,
                 });
             });
         };
@@ -102,7 +102,14 @@ impl Sorted {
 
 thread_local! {
     /// Room that each thread uses again for every tile.
-    static CANDIDATES: RefCell<Candidates> = RefCell::default();
+    static ROOM: RefCell<Room> = RefCell::default();
+}
+
+/// What the work on a tile is written down in.
+#[derive(Debug, Default)]
+struct Room {
+    touching: Touching,
+    candidates: Candidates,
 }
 
 struct ForcesOfTile<'a, N, const FULL: bool> {
@@ -113,7 +120,7 @@ struct ForcesOfTile<'a, N, const FULL: bool> {
     velocity: &'a Columns,
     tile: &'a Tile,
     of_tile: &'a mut OfTile,
-    candidates: &'a mut Candidates,
+    room: &'a mut Room,
 }
 
 impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
@@ -124,39 +131,60 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
         let Self {
             law,
             wall,
-            position,
-            velocity,
             tile,
-            candidates,
+            room: Room {
+                touching,
+                candidates,
+            },
             ..
         } = self;
-        let OfTile {
-            force,
-            tally,
-            touching,
-        } = self.of_tile;
+        let places = self.position.x.len();
+        let (position, velocity) = (self.position.first(places), self.velocity.first(places));
+        let OfTile { force, tally } = self.of_tile;
         force.clear(tile.room());
-        if touching.len() < tile.listed() {
-            touching.resize(tile.listed(), Partners::default());
-        }
+        let mut force = force.as_mut();
         let mut sums = Sums::<M>::default();
-        for place in (tile.first..tile.end).step_by(LANES) {
-            let block = Block::load(position, velocity, place, tile.end);
-            block.add_pairs::<N, FULL>(
-                law, self.pairs, position, velocity, tile, touching, force, &mut sums,
-            );
+        let blocks = || (tile.first..tile.end).step_by(LANES);
+        let block = |place| Block::<M>::load(position, velocity, place, tile.end);
+        touching.clear(tile.listed());
+        let mut ends = [0; TILE / LANES];
+        for (place, end) in blocks().zip(&mut ends) {
+            block(place).find_touching(self.pairs.reach, position, tile, touching);
+            *end = touching.distances.number();
         }
+        sums.grain_contacts += touching.distances.take_roots::<M, FULL>(self.pairs.reach);
+        let mut begin = 0;
+        for (place, end) in blocks().zip(ends) {
+            block(place).add_pairs::<N, FULL>(
+                law,
+                self.pairs,
+                position,
+                velocity,
+                tile,
+                touching,
+                begin..end,
+                &mut force,
+                &mut sums,
+            );
+            begin = end;
+        }
+        let (own_position, own_velocity) = (position.from(tile.first), velocity.from(tile.first));
         let mut place = tile.first;
         while place < tile.end {
             candidates.clear();
             while place < tile.end && candidates.have_room(wall.most_rings()) {
-                let block = Block::<M>::load(position, velocity, place, tile.end);
-                wall.find_candidates(&block, place - tile.first, candidates);
+                wall.find_candidates(&block(place), place - tile.first, candidates);
                 place += LANES;
             }
-            wall.turn_to_nearest::<M>(candidates);
-            wall.add_up_forces::<M, N, FULL>(law, candidates, &mut sums);
-            candidates.add_forces::<M>(force);
+            wall.turn_to_nearest::<M>(own_position, own_velocity, candidates);
+            wall.find_touching::<M>(candidates, &mut touching.distances);
+            wall.add_up_forces::<M, N, FULL>(
+                law,
+                candidates,
+                &mut touching.distances,
+                &mut force,
+                &mut sums,
+            );
         }
         *tally = Tally::default();
         sums.add_to(tally);

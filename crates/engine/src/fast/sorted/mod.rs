@@ -9,6 +9,7 @@
 //! instructions changes a bit.
 
 mod candidates;
+mod distances;
 mod forces;
 mod keys;
 mod listing;

@@ -1,16 +1,17 @@
 //! Contacts between grains: each block of grains against eight partners at a time.
 
+use core::ops::Range;
+
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::real::{Real, Vector};
 
+use super::distances::Distances;
+use super::rows::NOWHERE;
 use super::tile::{Partners, Tile};
-use crate::fast::columns::Columns;
+use crate::fast::columns::{ColumnsMut, ColumnsRef};
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
 use crate::fast::sums::Sums;
-
-/// Squared distance \[d^2\] below which two centres count as one, and have no normal.
-pub(super) const COINCIDENT: f64 = 1e-30;
 
 /// Constants of all pairs of grains.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,8 +36,8 @@ impl<M: Machine> Block<M> {
     /// The block that begins at `place`, of `grains` grains in all.
     #[inline(always)]
     pub(super) fn load(
-        position: &Columns,
-        velocity: &Columns,
+        position: ColumnsRef<'_>,
+        velocity: ColumnsRef<'_>,
         place: usize,
         grains: usize,
     ) -> Self {
@@ -55,59 +56,86 @@ impl<M: Machine> Block<M> {
         block
     }
 
-    /// Adds the forces between these grains and their partners in the tile to `force`, which counts places as
-    /// the tile does.
+    /// Writes down which of the partners in the tile touch these grains, so that what follows can be predicted.
+    #[inline(always)]
+    pub(super) fn find_touching(
+        &self,
+        reach: f64,
+        position: ColumnsRef<'_>,
+        tile: &Tile,
+        touching: &mut Touching,
+    ) {
+        let reach = Lanes::splat(reach);
+        let reach_squared = reach * reach;
+        // Lanes without a grain are out of reach.
+        let mut here = self.position;
+        here.z = Lanes::select(self.holds, here.z, Lanes::splat(-NOWHERE));
+        for &partners in tile.partners(self.place) {
+            let separation = here - position.load(partners.start as usize);
+            let squared = separation.squared();
+            touching.note(partners, squared, squared.less(reach_squared).any());
+        }
+    }
+
+    /// Adds the forces between these grains and the given ones that touch them to `force`, which counts places as the
+    /// tile does.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
     pub(super) fn add_pairs<N: NormalLaw, const FULL: bool>(
         &self,
         law: &N,
         constants: &PairConstants,
-        position: &Columns,
-        velocity: &Columns,
+        position: ColumnsRef<'_>,
+        velocity: ColumnsRef<'_>,
         tile: &Tile,
-        touching: &mut [Partners],
-        force: &mut Columns,
+        touching: &Touching,
+        those: Range<usize>,
+        force: &mut ColumnsMut<'_>,
         sums: &mut Sums<M>,
     ) {
-        let block = self;
-        let reach = Lanes::splat(constants.reach);
-        let reach_squared = reach * reach;
         let reduced_radius = Lanes::splat(constants.reduced_radius);
-        let zero = Lanes::splat(0.0);
         let mut on_block = LaneVector::default();
-        let listed = tile.partners(self.place);
-        // First the partners that touch, so that the branches below can be predicted.
-        let mut number = 0;
-        for partners in listed {
-            let separation = block.position - position.load(partners.start as usize);
-            let touches = separation.squared().less(reach_squared) & block.holds;
-            touching[number] = *partners;
-            number += usize::from(touches.any());
-        }
-        for partners in &touching[..number] {
+        for eight in those {
+            let partners = touching.partners[eight];
             let start = partners.start as usize;
-            let separation = block.position - position.load(start);
-            let distance_squared = separation.squared();
-            let touches = distance_squared.less(reach_squared)
-                & Lanes::splat(COINCIDENT).less(distance_squared)
-                & block.holds;
-            let inverse = distance_squared.reciprocal_sqrt();
-            let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
-            let away = block.velocity - velocity.load(start);
-            let normal_velocity = Lanes::select(touches, away.dot(separation) * inverse, zero);
+            let (overlap, inverse) = touching.distances.get::<M>(eight);
+            let separation = self.position - position.load(start);
+            let away = self.velocity - velocity.load(start);
+            let normal_velocity = away.dot(separation) * inverse;
             let answer = law.force(overlap, normal_velocity, reduced_radius);
-            let pushed = separation * Lanes::select(touches, answer.force * inverse, zero);
+            let pushed = separation * (answer.force * inverse);
             on_block += pushed;
             force.add(partners.force as usize, -pushed);
 
             let lost = (answer.elastic_force - answer.force) * normal_velocity;
             sums.add_contact::<FULL>(overlap, answer.energy, lost);
-            if FULL {
-                sums.grain_contacts += touches.count();
-            }
         }
         force.add(self.place - tile.first, on_block);
+    }
+}
+
+/// Blocks and partners of a tile that touch.
+#[derive(Debug, Default)]
+pub(super) struct Touching {
+    partners: Vec<Partners>,
+    pub(super) distances: Distances,
+}
+
+impl Touching {
+    /// Begins anew, with room for so many partners.
+    pub(super) fn clear(&mut self, room: usize) {
+        self.distances.clear(room);
+        if self.partners.len() < room {
+            self.partners.resize(room, Partners::default());
+        }
+    }
+
+    /// Writes down partners if they are `wanted`.
+    #[inline(always)]
+    fn note<M: Machine>(&mut self, partners: Partners, squared: Lanes<M>, wanted: bool) {
+        self.partners[self.distances.number()] = partners;
+        self.distances.note(0, squared);
+        self.distances.keep(wanted.into());
     }
 }
 

@@ -79,8 +79,6 @@ impl Tile {
 pub(super) struct OfTile {
     pub(super) force: Columns,
     pub(super) tally: Tally,
-    /// Room to write down who touches.
-    pub(super) touching: Vec<Partners>,
 }
 
 /// Displacements of a drift.

@@ -12,8 +12,10 @@ use peristalsis_physics::real::Real;
 use peristalsis_physics::wall::Lattice;
 use peristalsis_physics::wall::lattice::approximate_angle;
 
-use super::candidates::Candidates;
-use super::pairs::{Block, COINCIDENT};
+use super::candidates::{Candidates, MOST_EIGHTS};
+use super::distances::Distances;
+use super::pairs::Block;
+use crate::fast::columns::{ColumnsMut, ColumnsRef};
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::Machine;
 use crate::fast::sums::Sums;
@@ -22,12 +24,12 @@ use crate::wall::Wall;
 /// The wall at one step, as the kernel reads it.
 #[derive(Clone, Debug, Default)]
 pub(super) struct WallTable {
-    /// Radius of the rings of a wavelength, and once more of the first few.
-    radius: Vec<f64>,
-    /// Radius and its velocity, in turn, for the rings of a wavelength.
-    rings: Vec<f64>,
-    /// cos and sin, in turn, of the angles of wall spheres by half steps, a little more than a turn.
-    directions: Vec<f64>,
+    /// Radius of each ring of a wavelength and of those behind it, two by two.
+    radii: Vec<[[f64; 2]; RINGS / 2]>,
+    /// Radius and its velocity for the rings of a wavelength.
+    rings: Vec<[f64; 2]>,
+    /// cos and sin of the angles of wall spheres by half steps, a little more than a turn.
+    directions: Vec<[f64; 2]>,
     /// cos and sin of the angles, from the nearest sphere of a ring, at which its spheres stand, from the nearest outward.
     outward: Vec<(f64, f64)>,
     /// tan of the angle of half a step.
@@ -49,6 +51,9 @@ pub(super) struct WallTable {
     most_rings: usize,
 }
 
+/// Rings that are looked at one after another.
+const RINGS: usize = 8;
+
 /// Added to the reach, in rings, so that rounding leaves no ring at its edge out.
 const MARGIN: f64 = 1e-9;
 
@@ -69,16 +74,15 @@ impl WallTable {
         let rings_per_wave = lattice.rings_per_wave as usize;
         let most_rings = rings_in_reach(lattice, diameter);
         let directions = (0..2 * per_ring + 4)
-            .map(|step| direction(f64::from(step % (2 * per_ring))))
-            .flat_map(|(cos, sin)| [cos, sin])
+            .map(|step| direction(f64::from(step % (2 * per_ring))).into())
             .collect();
         // From the nearest sphere: 0, 2, -2, 4, ... half steps.
         let place =
             |index: u32| f64::from(index.div_ceil(2)) * if index % 2 == 1 { 2.0 } else { -2.0 };
         let outward = (0..per_ring).map(|index| direction(place(index))).collect();
         Self {
-            radius: vec![0.0; rings_per_wave + most_rings.next_multiple_of(4)],
-            rings: vec![0.0; 2 * rings_per_wave + 2],
+            radii: vec![[[0.0; 2]; RINGS / 2]; rings_per_wave],
+            rings: vec![[0.0; 2]; rings_per_wave],
             directions,
             outward,
             half_step: libm::tan(angle(1.0).min(1.0)),
@@ -100,11 +104,16 @@ impl WallTable {
     pub(super) fn follow(&mut self, wall: &Wall) {
         let wall = wall.prescribed().expect("a wall that this kernel serves");
         let rings = &wall.rings().expect("a wall of rings").rings;
-        for (entry, ring) in self.rings.chunks_exact_mut(2).zip(rings) {
-            entry.copy_from_slice(&[ring.radius, ring.velocity]);
+        for (entry, ring) in self.rings.iter_mut().zip(rings) {
+            *entry = [ring.radius, ring.velocity];
         }
-        for (radius, ring) in self.radius.iter_mut().zip(rings.iter().cycle()) {
-            *radius = ring.radius;
+        let mut behind = rings.iter().cycle();
+        for radii in &mut self.radii {
+            let from_here = behind.clone();
+            for (radius, ring) in radii.as_flattened_mut().iter_mut().zip(from_here) {
+                *radius = ring.radius;
+            }
+            behind.next();
         }
         let wave = wall.wave();
         let amplitude = wave.amplitude.abs();
@@ -135,35 +144,50 @@ impl WallTable {
         // No sphere of a ring is nearer than the ring itself.
         let from_axis = from_axis_squared.sqrt();
         let reach_squared = Lanes::splat(self.reach * self.reach);
-        let place = z * Lanes::splat(self.rings_per_length);
-        let (first, _) = (place - Lanes::splat(self.rings_within)).round();
-        let in_wave = self.in_wave(first);
-        let mut ring = first;
-        for four in (0..self.most_rings).step_by(4) {
-            let radii = Lanes::<M>::windows(&self.radius[four..], in_wave);
-            for radius in radii.into_iter().take(self.most_rings - four) {
-                let dz = z - ring * Lanes::splat(self.spacing);
-                let gap = radius - from_axis;
-                let meet = (gap * gap + dz * dz).less(reach_squared) & block.holds;
-                if meet.any() {
-                    candidates.add(first_place, meet, block.position, block.velocity, ring);
+        let mut ring = self.first_ring(z);
+        let mut before = 0.0;
+        let most = self.most_rings as f64;
+        while before < most {
+            let radii = Lanes::<M>::look_up(&self.radii, self.in_wave(ring));
+            let [a, b, c, d, e, f, g, h] = radii;
+            for two in 0..RINGS / 2 {
+                let pairs = [
+                    &a[two], &b[two], &c[two], &d[two], &e[two], &f[two], &g[two], &h[two],
+                ];
+                for radius in Lanes::<M>::of_pairs(pairs) {
+                    let dz = z - ring * Lanes::splat(self.spacing);
+                    let gap = radius - from_axis;
+                    let meet = (gap * gap + dz * dz).less(reach_squared) & block.holds;
+                    if meet.any() {
+                        candidates.add(first_place, meet, before);
+                    }
+                    ring += Lanes::splat(1.0);
+                    before += 1.0;
+                    if before >= most {
+                        return;
+                    }
                 }
-                ring += Lanes::splat(1.0);
             }
         }
     }
 
-    /// Turns all candidates to the nearest sphere of their ring, and mirrors them.
+    /// Turns all candidates to the nearest sphere of their ring, and mirrors them; positions and velocities begin with those of
+    /// the tile.
     #[inline(always)]
-    pub(super) fn turn_to_nearest<M: Machine>(&self, candidates: &mut Candidates) {
-        for (at, holds) in candidates.eights::<M>() {
-            let LaneVector { x, y, z } = candidates.position.load::<M>(at);
-            let velocity = candidates.velocity.load::<M>(at);
-            // The numbers of the other lanes are arbitrary.
-            let ring = Lanes::load(&candidates.ring, at);
-            let ring = Lanes::select(holds, ring, Lanes::splat(0.0));
-            let [radius, ring_velocity, ..] =
-                Lanes::<M>::windows(&self.rings, self.in_wave(ring).map(|ring| 2 * ring));
+    pub(super) fn turn_to_nearest<M: Machine>(
+        &self,
+        position: ColumnsRef<'_>,
+        velocity: ColumnsRef<'_>,
+        candidates: &mut Candidates,
+    ) {
+        candidates.fill_up();
+        for (at, _) in candidates.eights::<M>() {
+            let (places, before) = candidates.pairs::<M>(at);
+            let LaneVector { x, y, z } = position.gather(places);
+            let velocity = velocity.gather(places);
+            let ring = self.first_ring(z) + before;
+            let [radius, ring_velocity] =
+                Lanes::<M>::of_pairs(Lanes::<M>::look_up(&self.rings, self.in_wave(ring)));
             let parity = {
                 let (half, _) = (ring * Lanes::splat(0.5) - Lanes::splat(0.25)).round();
                 (ring - Lanes::splat(2.0) * half) * Lanes::splat(self.turn)
@@ -171,8 +195,7 @@ impl WallTable {
             let half_steps = approximate_angle(x, y) * Lanes::splat(self.half_steps_per_radian);
             let (sphere, _) = ((half_steps - parity) * Lanes::splat(0.5)).round();
             let (_, direction) = (Lanes::splat(2.0) * sphere + parity).round();
-            let [cos, sin, ..] =
-                Lanes::<M>::windows(&self.directions, direction.map(|direction| 2 * direction));
+            let [cos, sin] = Lanes::<M>::of_pairs(Lanes::<M>::look_up(&self.directions, direction));
             let across = y * cos - x * sin;
             let side = Lanes::select(
                 across.less(Lanes::splat(0.0)),
@@ -186,7 +209,7 @@ impl WallTable {
             let turned_y = (velocity.y * cos - velocity.x * sin) * side;
             let turned = LaneVector::new(turned_x, turned_y, velocity.z);
             candidates.velocity.store(at, turned);
-            radius.store(&mut candidates.ring, at);
+            radius.store(&mut candidates.radius, at);
             ring_velocity.store(&mut candidates.ring_velocity, at);
             cos.store(&mut candidates.cos, at);
             sin.store(&mut candidates.sin, at);
@@ -194,41 +217,36 @@ impl WallTable {
         }
     }
 
-    /// Works out the forces, from sphere to sphere outward along the rings.
+    /// Counts the spheres that the candidates touch, from sphere to sphere outward along the rings, so that what follows can
+    /// be predicted.
     #[inline(always)]
-    pub(super) fn add_up_forces<M: Machine, N: NormalLaw, const FULL: bool>(
+    pub(super) fn find_touching<M: Machine>(
         &self,
-        law: &N,
         candidates: &mut Candidates,
-        sums: &mut Sums<M>,
+        distances: &mut Distances,
     ) {
-        let zero = Lanes::<M>::splat(0.0);
-        let reach = Lanes::splat(self.reach);
+        distances.clear(MOST_EIGHTS * self.outward.len());
+        let reach = Lanes::<M>::splat(self.reach);
         let reach_squared = reach * reach;
         for (at, holds) in candidates.eights::<M>() {
             let LaneVector { x: u, y: v, z: dz } = candidates.position.load::<M>(at);
-            let velocity = candidates.velocity.load::<M>(at);
-            let radius = Lanes::load(&candidates.ring, at);
-            let ring_velocity = Lanes::load(&candidates.ring_velocity, at);
+            let radius = Lanes::load(&candidates.radius, at);
             // The angle is approximate: a lane that turned to the second nearest sphere touches in a slightly different
             // order, so that it may touch another sphere behind one that it does not touch.
             let patience = usize::from((u * Lanes::splat(self.half_step)).less(v).any());
 
-            // With p = u cos + v sin of a sphere, R of its ring, dz to it and V = dR/dt, the separation s from the grain
-            // has s^2 = rho^2 + R^2 + dz^2 - 2 R p, and (v - V) . s is as linear in cos and sin.
+            // With p = u cos + v sin of a sphere, R of its ring and dz to it, the separation s from the grain has
+            // s^2 = rho^2 + R^2 + dz^2 - 2 R p.
             let squares = u * u + v * v + radius * radius + dz * dz;
             // Lanes without a candidate are out of reach wherever they stand.
             let squares = Lanes::select(holds, squares, Lanes::splat(f64::INFINITY));
             let double = radius + radius;
             let (double_u, double_v) = (double * u, double * v);
-            let along = u * velocity.x + v * velocity.y + dz * velocity.z + ring_velocity * radius;
-            let along_u = radius * velocity.x + ring_velocity * u;
-            let along_v = radius * velocity.y + ring_velocity * v;
-            // First the number of spheres that lanes touch, so that the branches below can be predicted.
             let mut visits = 0;
             for (visited, &(cos, sin)) in self.outward.iter().enumerate() {
                 let distance_squared =
                     squares - (double_u * Lanes::splat(cos) + double_v * Lanes::splat(sin));
+                distances.note(visited, distance_squared);
                 if distance_squared.less(reach_squared).any() {
                     visits = visited + 1;
                 } else if visited > 0 && visited >= visits + patience {
@@ -236,27 +254,48 @@ impl WallTable {
                     break;
                 }
             }
+            distances.keep(visits);
+            candidates.visits[at / LANES] = visits;
+        }
+    }
+
+    /// Adds up the forces on the grains of all candidates.
+    #[inline(always)]
+    pub(super) fn add_up_forces<M: Machine, N: NormalLaw, const FULL: bool>(
+        &self,
+        law: &N,
+        candidates: &Candidates,
+        distances: &mut Distances,
+        force: &mut ColumnsMut<'_>,
+        sums: &mut Sums<M>,
+    ) {
+        sums.wall_contacts += distances.take_roots::<M, FULL>(self.reach);
+        let zero = Lanes::<M>::splat(0.0);
+        let mut eight = 0;
+        for (at, _) in candidates.eights::<M>() {
+            let LaneVector { x: u, y: v, z: dz } = candidates.position.load::<M>(at);
+            let velocity = candidates.velocity.load::<M>(at);
+            let radius = Lanes::load(&candidates.radius, at);
+            let ring_velocity = Lanes::load(&candidates.ring_velocity, at);
+            // With V = dR/dt, (v - V) . s is as linear in cos and sin as s^2.
+            let along = u * velocity.x + v * velocity.y + dz * velocity.z + ring_velocity * radius;
+            let along_u = radius * velocity.x + ring_velocity * u;
+            let along_v = radius * velocity.y + ring_velocity * v;
             // Sums of force over distance, and of it times cos and sin of the spheres.
             let (mut pushes, mut by_cos, mut by_sin) = (zero, zero, zero);
-            for &(cos, sin) in &self.outward[..visits] {
+            for &(cos, sin) in &self.outward[..candidates.visits[at / LANES]] {
                 let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));
-                let distance_squared = squares - (double_u * cos + double_v * sin);
-                let touches = distance_squared.less(reach_squared)
-                    & Lanes::splat(COINCIDENT).less(distance_squared);
-                let inverse = distance_squared.reciprocal_sqrt();
-                let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
+                let (overlap, inverse) = distances.get(eight);
+                eight += 1;
                 let parting = along - (along_u * cos + along_v * sin);
-                let normal_velocity = Lanes::select(touches, parting * inverse, zero);
+                let normal_velocity = parting * inverse;
                 let answer = law.force(overlap, normal_velocity, Lanes::splat(self.reduced_radius));
-                let push = Lanes::select(touches, answer.force * inverse, zero);
+                let push = answer.force * inverse;
                 pushes += push;
                 by_cos += push * cos;
                 by_sin += push * sin;
                 let lost = (answer.elastic_force - answer.force) * normal_velocity;
                 sums.add_contact::<FULL>(overlap, answer.energy, lost);
-                if FULL {
-                    sums.wall_contacts += touches.count();
-                }
             }
             // V . s = V (p - R) of each sphere.
             let outward = u * by_cos + v * by_sin - radius * pushes;
@@ -270,9 +309,16 @@ impl WallTable {
             let cos = Lanes::load(&candidates.cos, at);
             let sin = Lanes::load(&candidates.sin, at);
             let on_v = on_v * Lanes::load(&candidates.side, at);
-            let force = LaneVector::new(on_u * cos - on_v * sin, on_u * sin + on_v * cos, on_z);
-            candidates.position.store(at, force);
+            let on_grains = LaneVector::new(on_u * cos - on_v * sin, on_u * sin + on_v * cos, on_z);
+            candidates.add_forces(at, on_grains, force);
         }
+    }
+
+    /// The first ring within reach of a place along the tube, counted on beyond its ends.
+    #[inline(always)]
+    fn first_ring<M: Machine>(&self, z: Lanes<M>) -> Lanes<M> {
+        let place = z * Lanes::splat(self.rings_per_length);
+        (place - Lanes::splat(self.rings_within)).round().0
     }
 
     /// Which ring of a wavelength a ring is.
