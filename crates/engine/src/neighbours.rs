@@ -5,15 +5,17 @@
 //! and a snapshot needs no list.
 
 pub(crate) mod cells;
+mod rows;
 
 use core::ops::Range;
 
 use glam::DVec3;
 
 pub(crate) use self::cells::PairRule;
-use self::cells::{Cells, Grid, Piece, Rows, Search};
+use self::cells::{Cells, Grid, Piece, Search};
+use self::rows::{Collecting, Rows};
 use crate::fast::machine::Instructions;
-use crate::fast::threads::{PER_THREAD, Threads};
+use crate::fast::threads::Threads;
 
 /// Pairs of [`Late`] spheres are seldom near, so the search for them goes farther than the skin \[d\] and serves several lists.
 const FARTHER: f64 = 1.0;
@@ -32,12 +34,9 @@ pub(crate) struct Neighbours<H> {
     cells: Cells,
     late_cells: Cells,
     pieces: Vec<Piece>,
+    collecting: Collecting,
     /// Pairs that remember a contact, as (i, j, place in the list), when the list was last made.
     remembered: Vec<[u32; 3]>,
-    /// Of these, as (j, i), those that were too far apart to be found.
-    far: Vec<(u32, u32)>,
-    /// Room to work in, for [`Rows::turn`].
-    smaller: Vec<[[u32; 3]; 2]>,
     /// Places of the histories that moved when the list was made.
     moved: Vec<u32>,
 }
@@ -70,9 +69,8 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             cells: Cells::default(),
             late_cells: Cells::default(),
             pieces: Vec::new(),
+            collecting: Collecting::default(),
             remembered: Vec::new(),
-            far: Vec::new(),
-            smaller: Vec::new(),
             moved: Vec::new(),
         }
     }
@@ -195,33 +193,33 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         threads.each(&mut sorts, (), &|_| 0, &|(cells, numbers), ()| {
             cells.sort(grid, position, rule.diameter, numbers.clone());
         });
-        let (cells, of) = (&self.cells, [&self.cells, &self.late_cells]);
+        let among = [&self.cells, &self.late_cells];
         search(
             &mut self.pieces,
-            cells,
-            &of,
+            &self.cells,
+            &among,
             rule.skin,
             rule.length,
             threads,
         );
         self.remember(held);
-        let found = [&self.pieces[..], &self.late.found];
         let Self { rows, next, .. } = self;
-        next.turn(position.len(), found, &[], &mut self.smaller);
-        self.far.clear();
-        let is_far = |&&[i, j, _]: &&[u32; 3]| next.place(i as usize, j).is_none();
-        let far = self.remembered.iter().filter(is_far);
-        self.far.extend(far.map(|&[i, j, _]| (j, i)));
-        if !self.far.is_empty() {
+        let found = [&self.pieces[..], &self.late.found];
+        next.collect(position.len(), found, &mut self.collecting, threads);
+        self.moved.clear();
+        let place = |&[i, j, _]: &[u32; 3]| next.place(i as usize, j).map(|place| place as u32);
+        self.moved.extend(self.remembered.iter().map_while(place));
+        if self.moved.len() < self.remembered.len() {
             // Contacts that ended in this very step are listed once more, however far their spheres have jumped: what they
             // remember must be accounted for.
-            self.far.sort_unstable();
-            next.turn(position.len(), found, &self.far, &mut self.smaller);
+            let is_far = |&&[i, j, _]: &&[u32; 3]| next.place(i as usize, j).is_none();
+            let far = self.remembered.iter().filter(is_far);
+            let far: Vec<_> = far.map(|&[i, j, _]| (i, j)).collect();
+            next.insert(&far);
+            self.moved.clear();
+            let place = |&[i, j, _]: &[u32; 3]| next.place(i as usize, j).map(|place| place as u32);
+            self.moved.extend(self.remembered.iter().filter_map(place));
         }
-        self.moved.clear();
-        let places = self.remembered.iter();
-        let places = places.filter_map(|&[i, j, _]| next.place(i as usize, j));
-        self.moved.extend(places.map(|place| place as u32));
         debug_assert_eq!(self.moved.len(), self.remembered.len());
         next.history.resize(next.partner.len(), H::default());
         if held.is_none() {
@@ -301,28 +299,25 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     }
 }
 
-/// Searches all cells for pairs; the pieces of the answer are as many as serve the threads.
+/// Searches all cells for partners; the pieces of the answer are as many as serve the threads.
 fn search(
     pieces: &mut Vec<Piece>,
-    cells: &Cells,
-    of: &[&Cells],
+    of: &Cells,
+    among: &[&Cells],
     skin: f64,
     length: f64,
     threads: &Threads,
 ) {
-    let number = match threads.number() {
-        1 => 1,
-        threads => PER_THREAD * threads,
-    };
-    let begin = |piece: usize| piece * cells.number() / number;
+    let number = threads.stretches();
+    let begin = |piece: usize| piece * of.number() / number;
     pieces.resize_with(number, Piece::default);
     for (number, piece) in pieces.iter_mut().enumerate() {
         piece.cells = begin(number)..begin(number + 1);
     }
     threads.each(pieces, (), &|_| 0, &|piece, ()| {
         Instructions::widest().run(Search {
-            cells,
             of,
+            among,
             skin,
             length,
             piece,

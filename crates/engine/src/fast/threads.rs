@@ -28,7 +28,7 @@ pub fn processors() -> usize {
 }
 
 /// Stretches of work for each thread: one that is done early takes what others have not begun.
-pub(crate) const PER_THREAD: usize = 2;
+const PER_THREAD: usize = 2;
 
 /// Without work a thread stays awake for so long, then it looks again at such intervals: the parts of a step follow each
 /// other within some 10 us, and to wake a thread takes longer.
@@ -51,6 +51,13 @@ pub(crate) trait Cut: Sized + Send {
 impl Cut for () {
     fn cut(self, _: usize) -> (Self, Self) {
         ((), ())
+    }
+}
+
+impl<A: Cut, B: Cut> Cut for (A, B) {
+    fn cut(self, at: usize) -> (Self, Self) {
+        let ((first, first_rest), (second, second_rest)) = (self.0.cut(at), self.1.cut(at));
+        ((first, second), (first_rest, second_rest))
     }
 }
 
@@ -86,6 +93,14 @@ impl Threads {
         self.0.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
+    /// Into how many stretches a work is best cut.
+    pub(crate) fn stretches(&self) -> usize {
+        match self.number() {
+            1 => 1,
+            threads => PER_THREAD * threads,
+        }
+    }
+
     /// Never where there are no threads, so that what would share work out is not compiled there.
     pub(crate) fn several(&self) -> bool {
         cfg!(not(target_family = "wasm")) && self.0.is_some()
@@ -114,24 +129,11 @@ impl Threads {
     pub(crate) fn each<S: Send, P: Cut>(
         &self,
         stretches: &mut [S],
-        all: P,
-        length: &(impl Fn(&S) -> usize + Sync),
-        work: &(impl Fn(&mut S, P) + Sync),
-    ) {
-        self.each_beside(|| (), stretches, all, length, work);
-    }
-
-    /// The same, and beside it something that one thread does.
-    pub(crate) fn each_beside<S: Send, P: Cut>(
-        &self,
-        aside: impl FnOnce() + Send,
-        stretches: &mut [S],
         mut all: P,
         length: &(impl Fn(&S) -> usize + Sync),
         work: &(impl Fn(&mut S, P) + Sync),
     ) {
         let Some(pool) = &self.0 else {
-            aside();
             for stretch in stretches {
                 let (own, rest) = all.cut(length(stretch));
                 all = rest;
@@ -148,7 +150,6 @@ impl Threads {
         }
         let threads = self.number();
         let begun: Vec<AtomicUsize> = (0..threads).map(|_| AtomicUsize::new(0)).collect();
-        let aside = Mutex::new(Some(aside));
         let at_work = AtomicUsize::new(0);
         let take_parts = || {
             at_work.fetch_add(1, Ordering::Relaxed);
@@ -165,11 +166,6 @@ impl Threads {
                         work(stretch, own);
                     }
                 }
-            }
-            // Whoever is done first.
-            let aside = aside.try_lock().ok().and_then(|mut aside| aside.take());
-            if let Some(aside) = aside {
-                aside();
             }
             at_work.fetch_sub(1, Ordering::Release);
             // The others are about to end; rayon would soon fall asleep.

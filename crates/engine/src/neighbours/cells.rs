@@ -6,6 +6,7 @@ use core::slice;
 use glam::DVec3;
 use peristalsis_physics::real::Real;
 
+use super::rows::Found;
 use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::{Machine, Work};
@@ -26,116 +27,7 @@ pub(crate) struct PairRule<'a, F: Fn(usize, usize) -> bool> {
     pub(crate) admits: F,
 }
 
-/// Rows of partners, and a value beside each.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Rows<H> {
-    /// Row i is `start[i]..start[i + 1]` of the others.
-    pub(super) start: Vec<u32>,
-    pub(super) partner: Vec<u32>,
-    pub(super) history: Vec<H>,
-}
-
-impl<H> Rows<H> {
-    #[inline(always)]
-    pub(super) fn range(&self, row: usize) -> Range<usize> {
-        self.start[row] as usize..self.start[row + 1] as usize
-    }
-
-    /// Place of a partner of row `row`, if it is listed.
-    pub(super) fn place(&self, row: usize, partner: u32) -> Option<usize> {
-        let range = self.range(row);
-        let place = self.partner[range.clone()].binary_search(&partner).ok()?;
-        Some(range.start + place)
-    }
-
-    /// Makes the rows of so many spheres, without values, from the partners i < j of each sphere j that two searches found,
-    /// and from `more` pairs (j, i), in the order of j. Taking the spheres j in order leaves every row in order.
-    pub(super) fn turn(
-        &mut self,
-        spheres: usize,
-        found: [&[Piece]; 2],
-        more: &[(u32, u32)],
-        smaller: &mut Vec<[[u32; 3]; 2]>,
-    ) {
-        let Self { start, partner, .. } = self;
-        // While they are filled, the end of row i stands at i + 1; before, its length at i + 2.
-        start.clear();
-        start.resize(spheres + 2, 0);
-        smaller.clear();
-        smaller.resize(spheres, [[0; 3]; 2]);
-        for (search, pieces) in found.into_iter().enumerate() {
-            for (number, Piece { found, .. }) in (0..).zip(pieces) {
-                for i in &found.smaller {
-                    start[*i as usize + 2] += 1;
-                }
-                let mut begin = 0;
-                for &(j, end) in &found.ends {
-                    smaller[j as usize][search] = [number, begin, end];
-                    begin = end;
-                }
-            }
-        }
-        for &(_, i) in more {
-            start[i as usize + 2] += 1;
-        }
-        let mut end = 0;
-        for start in start.iter_mut() {
-            end += *start;
-            *start = end;
-        }
-        if partner.capacity() < end as usize {
-            // Room for later lists, so that they seldom ask for more.
-            partner.reserve(2 * end as usize - partner.len());
-        }
-        partner.resize(end as usize, 0);
-        let mut more = more.iter().peekable();
-        for (j, smaller) in (0..).zip(smaller) {
-            let mut list = |i: u32| {
-                let end = &mut start[i as usize + 1];
-                partner[*end as usize] = j;
-                *end += 1;
-            };
-            for (pieces, [number, begin, end]) in found.into_iter().zip(*smaller) {
-                if begin < end {
-                    let found = &pieces[number as usize].found.smaller;
-                    let of_sphere = &found[begin as usize..end as usize];
-                    of_sphere.iter().for_each(|&i| list(i));
-                }
-            }
-            while let Some(&(_, i)) = more.next_if(|&&(of, _)| of == j) {
-                list(i);
-            }
-        }
-        start.truncate(spheres + 1);
-    }
-}
-
-/// Of each of some spheres those near it whose numbers are smaller.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Found {
-    smaller: Vec<u32>,
-    /// Each of the spheres, and where those near it end.
-    ends: Vec<(u32, u32)>,
-}
-
-impl Found {
-    /// Keeps the pairs i < j that `admits` admits.
-    pub(super) fn retain(&mut self, admits: impl Fn(usize, usize) -> bool) {
-        let (mut begin, mut kept) = (0, 0);
-        for (j, end) in &mut self.ends {
-            for at in begin..*end as usize {
-                let i = self.smaller[at];
-                self.smaller[kept] = i;
-                kept += usize::from(admits(i as usize, *j as usize));
-            }
-            begin = *end as usize;
-            *end = kept as u32;
-        }
-        self.smaller.truncate(kept);
-    }
-}
-
-/// Some cells whose spheres are searched for.
+/// Some cells, whose spheres' partners are searched for.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Piece {
     pub(super) cells: Range<usize>,
@@ -357,15 +249,14 @@ impl Cells {
         self.start[cell] as usize..self.start[cell + 1] as usize
     }
 
-    /// Copies the spheres in a cell and beside it; answers how many there are.
+    /// Copies the spheres in a cell and beside it behind the first `number` of others; answers how many there are then.
     #[inline(always)]
-    fn gather<M: Machine>(&self, cell: usize, around: &mut Side) -> usize {
+    fn gather<M: Machine>(&self, cell: usize, around: &mut Side, mut number: usize) -> usize {
         let grid = &self.grid;
         let across = grid.across as usize;
         let (x, y) = ((cell % across) as u32, (cell / across % across) as u32);
         let z = (cell / (across * across)) as u32;
         let (first_x, last_x) = grid.beside(x).into_inner();
-        let mut number = 0;
         for z in grid.beside_along(z) {
             for y in grid.beside(y) {
                 // Cells beside each other across the tube are beside each other in the columns.
@@ -381,18 +272,16 @@ impl Cells {
                 number = whole;
             }
         }
-        // Behind the last no number is smaller.
-        Lanes::<M>::splat(f64::INFINITY).store(&mut around.number_in_lanes, number);
         number
     }
 }
 
-/// The search, in some cells, for pairs i < j nearer than (d_i + d_j)/2 + skin.
+/// The search, in some cells, for partners: pairs i < j nearer than (d_i + d_j)/2 + skin.
 pub(super) struct Search<'a> {
     /// The spheres i.
-    pub(super) cells: &'a Cells,
+    pub(super) of: &'a Cells,
     /// The spheres j, in the same grid.
-    pub(super) of: &'a [&'a Cells],
+    pub(super) among: &'a [&'a Cells],
     pub(super) skin: f64,
     /// Period of the tube \[d\].
     pub(super) length: f64,
@@ -405,59 +294,63 @@ impl Work for Search<'_> {
     #[inline(always)]
     fn run<M: Machine>(self) {
         let Self {
-            cells,
             of,
+            among,
             skin,
             length,
             piece,
         } = self;
         let Piece {
             cells: these,
-            found: Found { smaller, ends },
+            found: Found { partner, ends },
             around,
         } = piece;
         ends.clear();
         let whole = Lanes::<M>::splat(length);
         let mut end = 0;
         for cell in these.clone() {
-            if of.iter().all(|of| of.of_cell(cell).is_empty()) {
+            let own = of.of_cell(cell);
+            if own.is_empty() {
                 continue;
             }
-            let number = cells.gather::<M>(cell, around);
-            for of in of {
-                for j in of.of_cell(cell) {
-                    if smaller.len() < end + number + LANES {
-                        smaller.resize(2 * (end + number) + 64 * LANES, 0);
-                    }
-                    let centre = of.spheres.place.get(j);
-                    let place = LaneVector::<M>::new(
-                        Lanes::splat(centre.x),
-                        Lanes::splat(centre.y),
-                        Lanes::splat(centre.z),
-                    );
-                    let reach = Lanes::splat(of.spheres.radius[j] + skin);
-                    let this = Lanes::splat(of.spheres.number_in_lanes[j]);
-                    for block in around.blocks(number) {
-                        let places = LaneVector::new(
-                            Lanes::from_array(block.x),
-                            Lanes::from_array(block.y),
-                            Lanes::from_array(block.z),
-                        );
-                        let mut separation = place - places;
-                        // To the nearest image.
-                        let axial = separation.z.abs();
-                        separation.z = axial.min(whole - axial);
-                        let reach = reach + Lanes::from_array(block.radius);
-                        let near = separation.squared().less(reach * reach)
-                            & Lanes::from_array(block.number_in_lanes).less(this);
-                        let window = smaller[end..].first_chunk_mut();
-                        near.choose(block.number, window.expect("room for a block"));
-                        end += near.count() as usize;
-                    }
-                    ends.push((of.spheres.number[j], end as u32));
+            let mut number = 0;
+            for cells in among {
+                number = cells.gather::<M>(cell, around, number);
+            }
+            // Behind the last no number is larger.
+            Lanes::<M>::splat(f64::NEG_INFINITY).store(&mut around.number_in_lanes, number);
+            for i in own {
+                if partner.len() < end + number + LANES {
+                    partner.resize(2 * (end + number) + 64 * LANES, 0);
                 }
+                let centre = of.spheres.place.get(i);
+                let place = LaneVector::<M>::new(
+                    Lanes::splat(centre.x),
+                    Lanes::splat(centre.y),
+                    Lanes::splat(centre.z),
+                );
+                let reach = Lanes::splat(of.spheres.radius[i] + skin);
+                let this = Lanes::splat(of.spheres.number_in_lanes[i]);
+                for block in around.blocks(number) {
+                    let places = LaneVector::new(
+                        Lanes::from_array(block.x),
+                        Lanes::from_array(block.y),
+                        Lanes::from_array(block.z),
+                    );
+                    let mut separation = place - places;
+                    // To the nearest image.
+                    let axial = separation.z.abs();
+                    separation.z = axial.min(whole - axial);
+                    let reach = reach + Lanes::from_array(block.radius);
+                    let near = separation.squared().less(reach * reach)
+                        & this.less(Lanes::from_array(block.number_in_lanes));
+                    let window = partner[end..].first_chunk_mut();
+                    near.choose(block.number, window.expect("room for a block"));
+                    end += near.count() as usize;
+                }
+                ends.push((of.spheres.number[i], end as u32));
             }
         }
-        smaller.truncate(end);
+        partner.truncate(end);
     }
 }

@@ -3,10 +3,11 @@
 //! Sums have one order, whichever threads worked out their terms. One section adds them up as it goes. Of several, each
 //! writes down the terms of its own rows of the list, or rings, and then they are added in the order of the list.
 
-use core::slice;
+use core::ops::Range;
 
 use super::pairs::Pairs;
 use super::record::Record;
+use super::spheres::Own;
 use crate::fast::lanes::{LANES, Lanes, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
@@ -86,8 +87,9 @@ fn to_arrays<M: Machine>([one, two]: [Lanes<M>; 2]) -> [[f64; LANES]; 2] {
 /// Terms of the contacts in the rows of a section, which wait to be added.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowTerms {
-    /// Contacts of each row; behind them room for those of other sections.
-    pub(super) rows: Vec<u32>,
+    own: Own,
+    /// Where the contacts of each grain begin; behind them, where those of all other rows would.
+    begin: Vec<u32>,
     /// Of each contact normal dissipation, tangential loss, sliding loss, energy; and room for eight more.
     pub(super) losses: Vec<Record>,
     /// Of each contact overlap and axial force of the wall, where all sums are wanted; and room for eight more.
@@ -99,10 +101,11 @@ pub(super) struct RowTerms {
 }
 
 impl RowTerms {
-    /// Forgets all, and makes room for so many contacts in so many rows.
-    pub(super) fn clear(&mut self, rows: usize, contacts: usize, complete: bool) {
-        self.rows.clear();
-        self.rows.resize(rows + 1, 0);
+    /// Forgets all, and makes room for so many contacts in the rows of a section.
+    pub(super) fn clear(&mut self, own: Own, contacts: usize, complete: bool) {
+        self.own = own;
+        self.begin.clear();
+        self.begin.resize(own.grains + 2, 0);
         let room = contacts + LANES;
         if self.losses.len() < room {
             self.losses.resize(room, Record::ZERO);
@@ -115,29 +118,62 @@ impl RowTerms {
         self.largest_overlap = 0.0;
     }
 
-    /// All rows, to be added up one after the other.
-    fn rows(&self, complete: bool) -> Rows<'_> {
-        Rows {
-            rows: self.rows.iter(),
-            losses: self.losses[..self.contacts].iter(),
-            rest: self.rest[..if complete { self.contacts } else { 0 }].iter(),
+    /// One contact more in a row.
+    #[inline(always)]
+    pub(super) fn count(&mut self, row: usize) {
+        self.begin[row.min(self.own.grains) + 1] += 1;
+    }
+
+    /// After the last contact.
+    pub(super) fn close(&mut self) {
+        let mut all = 0;
+        for begin in &mut self.begin {
+            all += *begin;
+            *begin = all;
         }
+    }
+
+    /// The contacts of the grain at a place.
+    #[inline(always)]
+    fn of_place(&self, place: usize) -> Range<usize> {
+        let row = place - self.own.start;
+        self.begin[row] as usize..self.begin[row + 1] as usize
     }
 }
 
-/// Rows that are still to be added up.
-struct Rows<'a> {
-    rows: slice::Iter<'a, u32>,
-    losses: slice::Iter<'a, Record>,
-    rest: slice::Iter<'a, Record>,
+/// Terms of some rows of the list of all, row after row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Gathered {
+    pub(super) rows: Range<usize>,
+    losses: Vec<Record>,
+    rest: Vec<Record>,
 }
 
-impl Rows<'_> {
-    #[inline(always)]
-    fn add_next<M: Machine>(&mut self, sums: &mut ContactSums<M>) {
-        for _ in 0..self.rows.next().copied().unwrap_or_default() {
-            if let Some(losses) = self.losses.next() {
-                sums.add(losses, self.rest.next());
+impl Gathered {
+    /// Brings the terms together from all sections.
+    pub(super) fn gather(
+        &mut self,
+        pairs: &[[Pairs; 2]],
+        section_of: &[u16],
+        place: &[u32],
+        complete: bool,
+    ) {
+        let Self { rows, losses, rest } = self;
+        let (section_of, place) = (&section_of[rows.clone()], &place[rows.clone()]);
+        let contacts = section_of.iter().zip(place).map(|(&section, &place)| {
+            let [Pairs { terms, .. }, _] = &pairs[section as usize];
+            (terms, terms.of_place(place as usize))
+        });
+        losses.clear();
+        for (terms, contacts) in contacts.clone() {
+            for of_contact in &terms.losses[contacts] {
+                losses.push(*of_contact);
+            }
+        }
+        rest.clear();
+        if complete {
+            for (terms, contacts) in contacts {
+                rest.extend_from_slice(&terms.rest[contacts]);
             }
         }
     }
@@ -146,10 +182,7 @@ impl Rows<'_> {
 /// Adds up the terms of the contacts of all sections, row after row, as if they stood one after the other in the lanes.
 pub(super) struct AddContacts<'a> {
     pub(super) pairs: &'a [[Pairs; 2]],
-    /// The section of each grain.
-    pub(super) section_of: &'a [u16],
-    /// Whether all sums are wanted.
-    pub(super) complete: bool,
+    pub(super) gathered: &'a [Gathered],
     pub(super) tally: &'a mut Tally,
 }
 
@@ -160,25 +193,20 @@ impl Work for AddContacts<'_> {
     fn run<M: Machine>(self) {
         let Self {
             pairs,
-            section_of,
-            complete,
+            gathered,
             tally,
         } = self;
-        let mut sums = ContactSums::<M>::new();
-        let mut rows: Vec<_> = pairs
-            .iter()
-            .map(|[of_grains, _]| of_grains.terms.rows(complete))
-            .collect();
-        for &section in section_of {
-            rows[section as usize].add_next(&mut sums);
+        let (mut losses, mut rest) = (InTurn::<M>::new(), InTurn::<M>::new());
+        for gathered in gathered {
+            losses.add(&gathered.losses);
+            rest.add(&gathered.rest);
         }
-        let [losses, rest] = sums.added();
-        let [normal, tangential, sliding, energy] = losses.0;
+        let [normal, tangential, sliding, energy] = losses.added().0;
         tally.normal_dissipation += normal;
         tally.tangential_lost += tangential;
         tally.sliding_lost += sliding;
         tally.contact_energy += energy;
-        let [overlap, axial_force, ..] = rest.0;
+        let [overlap, axial_force, ..] = rest.added().0;
         tally.total_overlap += overlap;
         tally.wall_axial_force += axial_force;
         for [Pairs { terms, .. }, _] in pairs {
@@ -189,50 +217,60 @@ impl Work for AddContacts<'_> {
             tally.largest_overlap = tally.largest_overlap.max(terms.largest_overlap);
         }
         // Contacts of wall spheres with each other are no contacts of grains.
-        let mut of_wall = ContactSums::<M>::new();
+        let mut of_wall = InTurn::<M>::new();
         for [_, Pairs { terms, .. }] in pairs {
-            let losses = terms.losses[..terms.contacts].iter();
-            losses.for_each(|losses| of_wall.add(losses, None));
+            of_wall.add(&terms.losses[..terms.contacts]);
         }
-        let [losses, _] = of_wall.added();
-        let [normal, _, _, energy] = losses.0;
+        let [normal, _, _, energy] = of_wall.added().0;
         tally.normal_dissipation += normal;
         tally.contact_energy += energy;
     }
 }
 
-/// Eight sums of each term, which contacts take in turn.
-struct ContactSums<M: Machine> {
+/// Eight sums of four numbers, which records take in turn.
+struct InTurn<M: Machine> {
+    /// Whose turn it is.
     lane: usize,
-    losses: [Quad<M>; LANES],
-    rest: [Quad<M>; LANES],
+    sums: [Quad<M>; LANES],
 }
 
-impl<M: Machine> ContactSums<M> {
+impl<M: Machine> InTurn<M> {
     #[inline(always)]
     fn new() -> Self {
         Self {
             lane: 0,
-            losses: [Quad::<M>::splat(0.0); LANES],
-            rest: [Quad::<M>::splat(0.0); LANES],
+            sums: [Quad::<M>::splat(0.0); LANES],
         }
     }
 
     #[inline(always)]
-    fn add(&mut self, losses: &Record, rest: Option<&Record>) {
-        let lane = self.lane % LANES;
-        self.losses[lane] = self.losses[lane] + losses.quad();
-        if let Some(rest) = rest {
-            self.rest[lane] = self.rest[lane] + rest.quad();
+    fn add(&mut self, records: &[Record]) {
+        let until_first = (LANES - self.lane) % LANES;
+        let (before, records) = records.split_at(until_first.min(records.len()));
+        let (eights, after) = records.as_chunks::<LANES>();
+        self.add_each(before);
+        for eight in eights {
+            for (sum, record) in self.sums.iter_mut().zip(eight) {
+                *sum = *sum + record.quad();
+            }
         }
-        self.lane += 1;
+        self.add_each(after);
     }
 
-    /// The sums over the lanes, as [`Lanes::sum`] adds them.
     #[inline(always)]
-    fn added(self) -> [Record; 2] {
-        [self.losses, self.rest]
-            .map(|[a, b, c, d, e, f, g, h]| (((a + e) + (c + g)) + ((b + f) + (d + h))).record())
+    fn add_each(&mut self, records: &[Record]) {
+        for record in records {
+            let sum = &mut self.sums[self.lane];
+            *sum = *sum + record.quad();
+            self.lane = (self.lane + 1) % LANES;
+        }
+    }
+
+    /// The sum over the lanes, as [`Lanes::sum`] adds them.
+    #[inline(always)]
+    fn added(self) -> Record {
+        let [a, b, c, d, e, f, g, h] = self.sums;
+        (((a + e) + (c + g)) + ((b + f) + (d + h))).record()
     }
 }
 

@@ -52,7 +52,7 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
     #[inline(always)]
     fn run<M: Machine>(mut self) {
         let own = self.forces.own;
-        self.pairs.terms.clear(0, 0, false);
+        self.pairs.terms.clear(own, 0, false);
         self.pairs.ended.clear();
         if self.pairs.near.first.is_empty() && self.pairs.touched.is_empty() {
             return;
@@ -67,7 +67,7 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
             }
             None => {
                 let mut terms = core::mem::take(&mut self.pairs.terms);
-                terms.clear(own.number, self.pairs.touching.len(), self.complete);
+                terms.clear(own, self.pairs.touching.len(), self.complete);
                 let complete = self.complete;
                 let mut rows = OfRows {
                     own,
@@ -75,6 +75,7 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
                     complete,
                 };
                 self.work_out::<M>(&mut rows);
+                terms.close();
                 self.pairs.terms = terms;
             }
         }
@@ -247,7 +248,7 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
                 terms.rest[terms.contacts] = rest[lane].record();
             }
             // Of a contact in a row of another section nothing is kept.
-            terms.rows[row] += 1;
+            terms.count(row);
             let is_own = row < own.number;
             terms.contacts += usize::from(is_own);
             owned |= u8::from(is_own) << lane;

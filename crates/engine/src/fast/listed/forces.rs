@@ -2,7 +2,7 @@
 
 use peristalsis_physics::contact::NormalLaw;
 
-use super::book::{AddContacts, AddRings};
+use super::book::{AddContacts, AddRings, Gathered};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
 use super::network::{WallForces, mean_force};
@@ -77,7 +77,8 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         self.mean_wall_force = mean_force(elastic, core::iter::once(&section.rings), tally);
     }
 
-    /// The same by several threads: the contacts of each section, then the forces of its wall.
+    /// The same by several threads: the contacts of each section, then the forces of its wall, and beside them the terms of
+    /// all contacts in the order of the list.
     pub(super) fn share_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
         let (law, length) = (self.reference.law, self.reference.length);
         let time_step = self.reference.parameters.time_step;
@@ -91,12 +92,13 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         } = &mut *self.scratch;
         let instructions = *instructions;
         let grains = spheres.grains;
-        let places = &spheres.place[grains..];
+        let place = &spheres.place[..];
         let spheres = spheres.moving();
         let elastic = wall.elastic();
         let Shares {
             sections,
             pairs,
+            gathered,
             section_of,
             ..
         } = shares;
@@ -124,28 +126,35 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                 }
             },
         );
-        let sums = || {
-            instructions.run(AddContacts {
-                pairs,
-                section_of,
-                complete,
-                tally,
-            });
-            ended.clear();
-            ended.extend(pairs.iter().flat_map(|[of_grains, _]| &of_grains.ended));
-            ended.sort_unstable_by_key(|(at, _)| *at);
-            for (_, energy) in ended {
-                tally.history_reset += *energy;
+        let pairs = &pairs[..];
+        let gather = |gathered: &mut [Gathered]| {
+            for gathered in gathered {
+                gathered.gather(pairs, section_of, place, complete);
             }
         };
-        let Some(elastic) = elastic else {
-            let beside_wall = &mut self.beside_wall[..];
-            threads.each_beside(
-                sums,
+        if let Some(elastic) = elastic {
+            threads.each(sections, &mut gathered[..], &|_| 1, &|section, gathered| {
+                gather(gathered);
+                let [force, _] = section.forces.of_wall();
+                instructions.run(WallForces {
+                    wall: elastic,
+                    rings: &mut section.rings,
+                    spheres,
+                    places: &place[grains..],
+                    first: section.own.of_wall().start,
+                    force,
+                    tally: None,
+                    complete,
+                });
+            });
+        } else {
+            let all = (&mut gathered[..], &mut self.beside_wall[..]);
+            threads.each(
                 sections,
-                &mut *beside_wall,
+                all,
                 &|_| 1,
-                &|section, beside_wall| {
+                &|section, (gathered, beside_wall)| {
+                    gather(gathered);
                     let mut grains = GrainsMut {
                         moving: spheres,
                         first: section.own.start,
@@ -156,27 +165,27 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                     }
                 },
             );
+        }
+        instructions.run(AddContacts {
+            pairs,
+            gathered,
+            tally,
+        });
+        ended.clear();
+        ended.extend(pairs.iter().flat_map(|[of_grains, _]| &of_grains.ended));
+        ended.sort_unstable_by_key(|(at, _)| *at);
+        for (_, energy) in ended {
+            tally.history_reset += *energy;
+        }
+        let Some(elastic) = elastic else {
             for &section in section_of {
-                beside_wall[section as usize].sums.add_row(tally);
+                self.beside_wall[section as usize].sums.add_row(tally);
             }
-            for BesideWall { sums, .. } in beside_wall {
+            for BesideWall { sums, .. } in &mut self.beside_wall {
                 sums.clear();
             }
             return;
         };
-        threads.each_beside(sums, sections, (), &|_| 0, &|section, ()| {
-            let [force, _] = section.forces.of_wall();
-            instructions.run(WallForces {
-                wall: elastic,
-                rings: &mut section.rings,
-                spheres,
-                places,
-                first: section.own.of_wall().start,
-                force,
-                tally: None,
-                complete,
-            });
-        });
         let rings = || sections.iter().map(|section| &section.rings);
         instructions.run(AddRings {
             sections: rings().map(|rings| &rings.terms),

@@ -48,7 +48,7 @@ pub(crate) struct Scratch {
     /// Places in the list of all that remember a contact.
     held: Vec<u32>,
     /// The section that hands each of them over, and which of its own it is.
-    holders: Vec<(usize, usize)>,
+    holders: Vec<(u16, u32)>,
     /// Room: of each section the next.
     next: Vec<usize>,
     /// Room: contacts of all sections that have ended.
@@ -202,8 +202,10 @@ impl Scratch {
 
     /// Takes all histories out of the sections' lists, and writes down where in the list of all they stand, and whose each
     /// is.
-    fn hand_over(&mut self) {
+    fn hand_over<H: Copy + Default + PartialEq>(&mut self, list: &Neighbours<H>) {
         let Self {
+            threads,
+            spheres,
             shares,
             held,
             holders,
@@ -214,27 +216,32 @@ impl Scratch {
             sections,
             pairs,
             offers,
+            section_of,
             ..
         } = shares;
-        for (section, (pairs, offer)) in sections.iter().zip(pairs.iter_mut().zip(&mut *offers)) {
-            let [of_grains, _] = pairs;
-            of_grains.hand_over(section.own, &mut offer.carried);
-        }
+        let of_sections = (&mut pairs[..], &sections[..]);
+        threads.each(offers, of_sections, &|_| 1, &|offer, (pairs, sections)| {
+            for (section, [of_grains, _]) in sections.iter().zip(pairs) {
+                of_grains.hand_over(section.own, &mut offer.carried);
+            }
+        });
         held.clear();
         holders.clear();
         next.clear();
         next.resize(offers.len(), 0);
-        // Each section has its own in order.
-        while let Some((section, place)) = (0..offers.len())
-            .filter_map(|section| {
-                let places = &offers[section].carried.places;
-                Some((section, *places.get(next[section])?))
-            })
-            .min_by_key(|&(_, place)| place)
-        {
-            held.push(place);
-            holders.push((section, next[section]));
-            next[section] += 1;
+        // Each section has its own in order, row by row.
+        let rows = spheres.grains.min(list.rows());
+        for (row, &section) in section_of[..rows].iter().enumerate() {
+            let (places, end) = (
+                &offers[section as usize].carried.places,
+                list.range(row).end,
+            );
+            let next = &mut next[section as usize];
+            while let Some(&place) = places.get(*next).filter(|&&place| (place as usize) < end) {
+                held.push(place);
+                holders.push((section, *next as u32));
+                *next += 1;
+            }
         }
     }
 
@@ -387,7 +394,7 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         let Self {
             reference, scratch, ..
         } = self;
-        scratch.hand_over();
+        scratch.hand_over(&reference.contacts.pairs);
         if scratch.shares.are_worn() {
             scratch.store_spheres(reference.bodies, reference.past);
             scratch.store_wall_memory::<T>(reference.contacts, &self.beside_wall);
@@ -412,7 +419,7 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         threads.each(&mut shares.pairs, (), &|_| 0, &|[of_grains, _], ()| {
             of_grains.carry_on(places, |history| {
                 let (section, which) = holders[history];
-                &offers[section].carried.histories[which]
+                &offers[section as usize].carried.histories[which as usize]
             });
         });
     }

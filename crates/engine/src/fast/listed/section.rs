@@ -5,12 +5,13 @@
 
 use core::ops::Range;
 
+use super::book::Gathered;
 use super::motion::Moved;
 use super::network::Rings;
 use super::pairs::{Border, Carried, Pairs};
 use super::spheres::{Forces, Own, Spheres};
 use crate::bodies::Bodies;
-use crate::fast::threads::{PER_THREAD, Threads};
+use crate::fast::threads::Threads;
 use crate::neighbours::{Drift, Neighbours};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
@@ -56,6 +57,8 @@ pub(super) struct Shares {
     /// The pairs of each whose first sphere is a grain, and those of wall spheres only.
     pub(super) pairs: Vec<[Pairs; 2]>,
     pub(super) offers: Vec<Offer>,
+    /// As many as there are sections.
+    pub(super) gathered: Vec<Gathered>,
     /// The section of each sphere, by its number.
     pub(super) section_of: Vec<u16>,
     /// Room: of each slice of the tube the work that its spheres make, then its section.
@@ -159,10 +162,7 @@ impl Shares {
             let lattice = wall.lattice();
             (lattice.rings() as usize, lattice.spheres_per_ring as usize)
         });
-        let most = match threads.number() {
-            1 => 1,
-            threads => PER_THREAD * threads,
-        };
+        let most = threads.stretches();
         let slices = match rings {
             0 => SLICES_OF_A_SECTION * most,
             rings => rings,
@@ -203,6 +203,10 @@ impl Shares {
         self.sections.resize_with(sections, Section::default);
         self.pairs.resize_with(sections, Default::default);
         self.offers.resize_with(sections, Offer::default);
+        self.gathered.resize_with(sections, Gathered::default);
+        for (number, gathered) in self.gathered.iter_mut().enumerate() {
+            gathered.rows = number * grains / sections..(number + 1) * grains / sections;
+        }
         for (number, section) in (0..).zip(&mut self.sections) {
             (section.number, section.own) = (number, Own::default());
         }

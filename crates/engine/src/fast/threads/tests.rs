@@ -1,4 +1,3 @@
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
@@ -42,19 +41,6 @@ fn threads_that_sleep_are_waked() {
             thread::sleep(Duration::from_millis(5));
         }
     });
-}
-
-#[test]
-fn what_stands_beside_is_done_once() {
-    let threads = Threads::new(2).expect("threads");
-    let done = AtomicUsize::new(0);
-    for _ in 0..50 {
-        let aside = || {
-            done.fetch_add(1, Ordering::Relaxed);
-        };
-        threads.each_beside(aside, &mut [(); 3], (), &|()| 0, &|(), ()| ());
-    }
-    assert_eq!(done.into_inner(), 50);
 }
 
 #[test]
