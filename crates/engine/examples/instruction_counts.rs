@@ -1,8 +1,8 @@
 //! Advances one workload, for `scripts/instruction_counts.py` to have its instructions counted by callgrind, and for
 //! `scripts/bench_wasm.py` to time it.
 //!
-//! `instruction_counts WORKLOAD PATH [TIMES]` prints the grain-steps of the part that is counted, which is so many times
-//! as long; `instruction_counts --list` the names of the workloads.
+//! `instruction_counts WORKLOAD PATH [TIMES [THREADS]]` prints the grain-steps of the part that is counted, which is so many
+//! times as long; `instruction_counts --list` the names of the workloads.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "a program")]
 
 #[path = "../benches/workloads/mod.rs"]
@@ -20,8 +20,9 @@ fn counted_advance(simulation: &mut Simulation, steps: u64) -> Result<(), Engine
     simulation.advance(steps)
 }
 
-fn count(workload: Workload, path: Path, times: u64) -> Result<u64, EngineError> {
+fn count(workload: Workload, path: Path, times: u64, threads: usize) -> Result<u64, EngineError> {
     let mut simulation = workload.simulation(path)?;
+    simulation.compute_with(path.instructions, threads)?;
     let steps = workload.steps() * times;
     counted_advance(&mut simulation, steps)?;
     Ok(simulation.bodies().grains as u64 * steps)
@@ -37,22 +38,25 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     let times = arguments.get(2).map_or(Ok(1), |times| times.parse());
+    let threads = arguments.get(3).map_or(Ok(1), |threads| threads.parse());
     let work = match arguments[..] {
-        [workload, path] | [workload, path, _] => Workload::ALL
+        [workload, path] | [workload, path, _] | [workload, path, _, _] => Workload::ALL
             .into_iter()
             .find(|known| known.name() == workload)
             .zip(Path::all().find(|known| known.name == path)),
         _ => None,
     };
-    let (Some((workload, path)), Ok(times)) = (work, times) else {
-        eprintln!("usage: instruction_counts --list | WORKLOAD reference|plain|avx2|... [TIMES]");
+    let (Some((workload, path)), Ok(times), Ok(threads)) = (work, times, threads) else {
+        eprintln!(
+            "usage: instruction_counts --list | WORKLOAD reference|plain|avx2|... [TIMES [THREADS]]"
+        );
         return ExitCode::from(2);
     };
     if !path.instructions.available() {
         eprintln!("this machine has no {}", path.name);
         return ExitCode::from(3);
     }
-    match count(workload, path, times) {
+    match count(workload, path, times, threads) {
         Ok(grain_steps) => {
             println!("{grain_steps}");
             ExitCode::SUCCESS
