@@ -8,7 +8,8 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 peristalsis() { target/release/peristalsis "$@" --quiet; }
 
-peristalsis run --preset frictionless-fine --set drive.width=2.2 --set drive.strain_rate=0.1 --set tube.waves=4 \
+# The tube on which most claims of the source hold.
+peristalsis run --preset frictionless-source --set drive.width=2.4 --set tube.waves=4 \
     --set run.periods=16 --trajectory gsd --trajectory-every 0.1 --out "$scratch/jamming"
 peristalsis render "$scratch/jamming" --film --width 440 --window 0:6 --fps 15 --out docs/images/jamming.gif
 
