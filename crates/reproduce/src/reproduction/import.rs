@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use peristalsis_formats::read_table;
 use peristalsis_study::{Identity, Row, State, Store, StudyError};
+use rayon::prelude::*;
 
 use super::Reproduction;
 use crate::error::ReproduceError;
@@ -50,8 +51,10 @@ impl Reproduction {
         let mut tables = Vec::new();
         for path in paths {
             if path.is_dir() {
-                for file in files_of(path)? {
-                    match Rows::read(&file) {
+                let files = files_of(path)?;
+                let read: Vec<_> = files.par_iter().map(|file| Rows::read(file)).collect();
+                for (file, rows) in files.into_iter().zip(read) {
+                    match rows {
                         Ok(rows) => tables.push(rows),
                         Err(error) => import.skipped.push((file, error.to_string())),
                     }

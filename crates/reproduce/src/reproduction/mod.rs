@@ -7,6 +7,7 @@ mod published;
 mod sample;
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use peristalsis_study::{
@@ -17,6 +18,7 @@ use crate::claim::Claim;
 use crate::error::{ReproduceError, make_folder};
 use crate::evidence::Evidence;
 use crate::examination::{Examination, experiments_named, without_panic};
+use crate::finding::Finding;
 use crate::studies::{Products, Size, StudyFile};
 pub use import::{Import, ImportedRuns};
 pub use published::{DifferingRow, PublishedRows, published_in_words};
@@ -452,38 +454,68 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Examines the claims whose studies have all ended.
+    /// Examines the claims whose studies have all ended, side by side.
     fn examine_what_has_ended(&mut self) {
-        for (place, claim) in self.claims.iter().enumerate() {
+        let is_ready = |claim: &Claim| {
             let mut studies = claim.all_studies().into_iter();
-            let is_ready =
-                studies.all(|name| self.study(name).is_some_and(|study| study.has_ended));
-            if is_ready && self.examinations[place].is_none() {
-                let examination = self.examine(claim);
-                (self.watch)(Event::Examined(&examination));
-                self.examinations[place] = Some(examination);
+            studies.all(|name| self.study(name).is_some_and(|study| study.has_ended))
+        };
+        let places = 0..self.claims.len();
+        let ready: Vec<(usize, Claim)> = places
+            .filter(|&place| self.examinations[place].is_none())
+            .map(|place| (place, self.claims[place]))
+            .filter(|(_, claim)| is_ready(claim))
+            .collect();
+        let Self {
+            evidence,
+            studies,
+            claims,
+            examinations,
+            watch,
+            ..
+        } = self;
+        let evidence = &*evidence;
+        let (sender, receiver) = mpsc::channel();
+        rayon::in_place_scope(|scope| {
+            for (place, claim) in ready {
+                let sender = sender.clone();
+                scope.spawn(move |_| {
+                    let outcome = without_panic(|| (claim.examine)(evidence));
+                    // The receiver goes after the last answer.
+                    let _ = sender.send((place, outcome));
+                });
             }
-        }
+            drop(sender);
+            for (place, outcome) in receiver {
+                let examination = examination(&claims[place], outcome, studies);
+                watch(Event::Examined(&examination));
+                examinations[place] = Some(examination);
+            }
+        });
     }
 
     fn study(&self, name: &str) -> Option<&StudyCourse<'a>> {
         self.studies.iter().find(|study| study.name() == name)
     }
+}
 
-    fn examine(&self, claim: &Claim) -> Examination {
-        let outcome = without_panic(|| (claim.examine)(&self.evidence));
-        // An error of a claim follows from the failure of one of its studies, if one failed.
-        let failure = |name| {
-            let reason = self.study(name)?.failure.as_ref()?;
-            Some(format!("study {name}: {reason}"))
-        };
-        let outcome = outcome.map_err(|error| match error {
-            ReproduceError::Panicked => error.to_string(),
-            error => {
-                let failed_study = claim.all_studies().into_iter().find_map(failure);
-                failed_study.unwrap_or_else(|| error.to_string())
-            }
-        });
-        Examination::new(*claim, outcome)
-    }
+/// What came out of a claim.
+fn examination(
+    claim: &Claim,
+    outcome: Result<Finding, ReproduceError>,
+    studies: &[StudyCourse<'_>],
+) -> Examination {
+    // An error of a claim follows from the failure of one of its studies, if one failed.
+    let failure = |name| {
+        let study = studies.iter().find(|study| study.name() == name)?;
+        Some(format!("study {name}: {}", study.failure.as_ref()?))
+    };
+    let outcome = outcome.map_err(|error| match error {
+        ReproduceError::Panicked => error.to_string(),
+        error => {
+            let failed_study = claim.all_studies().into_iter().find_map(failure);
+            failed_study.unwrap_or_else(|| error.to_string())
+        }
+    });
+    Examination::new(*claim, outcome)
 }
