@@ -8,7 +8,9 @@ use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use crate::RunError;
-use crate::assemble::{check_number, moving_spheres, newtonian_reference, scheduled_wavelengths};
+use crate::assemble::{
+    check_number, moving_spheres, newtonian_reference, scheduled_wavelengths, walls,
+};
 use crate::run::Run;
 use crate::si::SiEstimate;
 use crate::trajectory::{self, TrajectoryEstimate, TrajectoryPlan, TrajectoryRequest};
@@ -46,6 +48,9 @@ pub struct Estimate {
     pub number_density: f64,
     /// Length of the tube \[d\].
     pub length: f64,
+    /// Clear opening of a prescribed wall at the throats and in the bellies, by the drive at the start \[d\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clear_openings: Option<[f64; 2]>,
     /// Wave period \[t\].
     pub period: Option<f64>,
     /// Length of the run in periods.
@@ -137,6 +142,7 @@ pub fn estimate_by(
         volume_fraction: configuration.volume_fraction(),
         number_density: configuration.number_density(),
         length: configuration.tube.length(),
+        clear_openings: clear_openings(configuration),
         period: configuration.drive.period(),
         periods: configuration.run.periods,
         wavelengths: scheduled_wavelengths(configuration),
@@ -157,6 +163,18 @@ pub fn estimate_by(
         trajectory,
         warnings,
     })
+}
+
+/// Clear opening of a prescribed wall at the throats and in the bellies \[d\].
+fn clear_openings(configuration: &Configuration) -> Option<[f64; 2]> {
+    let Control::Strain { .. } = configuration.drive.control else {
+        return None;
+    };
+    let wall = walls(configuration);
+    let wave = wall.wave()?;
+    let amplitude = wave.amplitude.abs();
+    let radii = [-amplitude, amplitude * wave.contraction.largest()];
+    Some(radii.map(|by| (2.0 * (wave.mean_radius + by) - wall.sphere_diameter()).max(0.0)))
 }
 
 /// A warning under the hardest drive of drive.schedule.

@@ -72,6 +72,18 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             significant(estimate.restitution, 3)
         ),
     ];
+    if let Some(openings) = estimate.clear_openings {
+        let [throat, belly] = openings.map(|opening| significant(opening, 4));
+        let in_mm = estimate.si.as_ref().map(|si| {
+            let [throat, belly] =
+                openings.map(|opening| significant(1e3 * si.unit_length_m * opening, 4));
+            format!(" ({throat} and {belly} mm)")
+        });
+        let in_mm = in_mm.unwrap_or_default();
+        let line =
+            format!("clear opening     {throat} d at the throats, {belly} d in the bellies{in_mm}");
+        lines.insert(2, line);
+    }
     if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
         lines.push(format!(
             "Newtonian fluid   J/Jmax = {ratio:.4} in this tube, without load"

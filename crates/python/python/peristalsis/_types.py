@@ -630,7 +630,7 @@ class Summary(TypedDict):
     contacts: float
     """late mean number of contacts of a grain"""
     wall_power: float
-    """late mean power that wall or drive put in [m d^2/t^3]"""
+    """late mean power that wall or drive put into the whole tube [m d^2/t^3]"""
     dissipated_power: float
     """late mean power lost [m d^2/t^3]"""
     bottleneck: float
@@ -690,7 +690,8 @@ class Summary(TypedDict):
     wall_torque_error: float | None
     """its standard error [m d^2/t^2]"""
     wear_power: float | None
-    """late mean power that grains lose where they slide on the wall; missing without friction [m d^2/t^3]"""
+    """late mean power that grains lose where they slide on the wall, in the whole tube; missing without friction [m
+    d^2/t^3]"""
     wear_power_error: float | None
     """its standard error [m d^2/t^3]"""
     wall_wear: float | None

@@ -192,7 +192,7 @@ impl Summary {
         late::pressed(&self.late)
     }
 
-    /// Late mean power that wall or drive put in \[m d^2/t^3\].
+    /// Late mean power that wall or drive put into the whole tube \[m d^2/t^3\].
     pub fn wall_power(&self) -> f64 {
         self.mean(|sample| sample.wall_power)
     }

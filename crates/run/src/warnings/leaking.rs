@@ -2,7 +2,7 @@
 
 use peristalsis_configuration::Configuration;
 use peristalsis_physics::contact::{NormalLaw, reduced_radius};
-use peristalsis_physics::wall::{Lattice, RadiusWave};
+use peristalsis_physics::wall::{Arrangement, Lattice, RadiusWave};
 
 use super::warning::Warning;
 
@@ -45,6 +45,31 @@ pub(super) fn warning(
          per ring and more rings per wave, or a lower drive.strain_rate"
     );
     (part > LEAKING_ENERGY).then_some(Warning { key, message })
+}
+
+/// That a table of wall spheres leaves a stretch of the tube without any.
+pub(super) fn bare_stretch(configuration: &Configuration) -> Option<Warning> {
+    let (tube, length) = (&configuration.tube, configuration.tube.length());
+    if tube.arrangement != Arrangement::File {
+        return None;
+    }
+    let mut places = tube.places.clone();
+    places.sort_by(f64::total_cmp);
+    // The tube is periodic: behind the last place comes the first.
+    let next = places.iter().skip(1).copied();
+    let next = next.chain(places.first().map(|first| first + length));
+    let stretches = places.iter().copied().zip(next);
+    let (from, to) =
+        stretches.max_by(|one, other| (one.1 - one.0).total_cmp(&(other.1 - other.0)))?;
+    let message = format!(
+        "no wall sphere stands between {from:.1} and {to:.1} d along the tube, and grains leave it there: the table must \
+         cover the whole length of {length} d (tube.waves x tube.wavelength), since it is not repeated"
+    );
+    let bare = to - from > configuration.wall.sphere_diameter + configuration.grains.diameter_min;
+    bare.then_some(Warning {
+        key: "tube.places",
+        message,
+    })
 }
 
 /// The elastic energy of a grain whose centre is in the widest gap of the lattice: what it must have to pass.
@@ -121,6 +146,32 @@ mod tests {
         assert_eq!(energy_to_pass(law, &lattice(4, 4), 1.5, 0.01), 0.0);
         let tight = energy_to_pass(law, &lattice(1_000_000, 1_000_000), 1.5, 1.0);
         assert_eq!(tight, f64::INFINITY);
+    }
+
+    #[test]
+    fn a_table_that_ends_before_the_tube_is_warned_of() {
+        let bare = |waves: u32| {
+            let places: Vec<String> = (0..40)
+                .map(|k| format!("{:.1}", 0.5 * f64::from(k)))
+                .collect();
+            let angles: Vec<String> = (0..40)
+                .map(|k| format!("{:.1}", 2.4 * f64::from(k)))
+                .collect();
+            let text = format!(
+                "preset = \"frictionless\"\ntube.waves = {waves}\ntube.arrangement = \"file\"\n\
+                 tube.places = [{}]\ntube.angles = [{}]\n",
+                places.join(", "),
+                angles.join(", ")
+            );
+            let configuration = Configuration::from_toml("helix.toml", &text).unwrap();
+            bare_stretch(&configuration).map(|warning| warning.message)
+        };
+        assert_eq!(bare(2), None);
+        let message = bare(10).unwrap();
+        assert!(
+            message.starts_with("no wall sphere stands between 19.5 and 100.0 d"),
+            "{message}"
+        );
     }
 
     #[test]
