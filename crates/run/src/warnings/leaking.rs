@@ -1,4 +1,4 @@
-//! Whether a prescribed wall, which is a lattice of spheres, keeps soft grains in.
+//! Whether the spheres of a prescribed wall, in a lattice or from a table, keep soft grains in.
 
 use peristalsis_configuration::Configuration;
 use peristalsis_physics::contact::{NormalLaw, reduced_radius};
