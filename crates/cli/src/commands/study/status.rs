@@ -134,7 +134,9 @@ pub(super) fn estimate(bracket: &Bracket) -> String {
         true => (lower, upper),
         false => (upper, lower),
     };
-    format!("{of}: with {key} = {with} most runs have a transition, with {without} half of them or fewer")
+    format!(
+        "{of}: with {key} = {with} most runs have a transition, with {without} half of them or fewer"
+    )
 }
 
 pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
