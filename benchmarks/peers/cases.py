@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,18 @@ COARSE_DENSE: dict[str, str | float] = {
     "initial.state": "jammed",
 }
 
+FRICTIONAL = Case(
+    name="frictional",
+    title="frictional grains, elastic wall 22 x 23, n 0.71, f^P 0.005, strain rate 0.00401, L = 120",
+    preset="frictional",
+    settings={"drive.force_amplitude": 0.005, "tube.waves": 6, "initial.state": "rest"},
+    periods=1,
+    quick_periods=0.25,
+    pair_styles=("granular", "gran/hertz/history"),
+    skin=0.4,
+    shared_out=True,
+)
+
 CASES = (
     Case(
         name="fine-unjammed",
@@ -88,26 +100,14 @@ CASES = (
         skin=0.9,
         shared_out=True,
     ),
-    Case(
-        name="frictional",
-        title="frictional grains, elastic wall 22 x 23, n 0.71, f^P 0.005, strain rate 0.00401, L = 120",
-        preset="frictional",
-        settings={"drive.force_amplitude": 0.005, "tube.waves": 6, "initial.state": "rest"},
-        periods=1,
-        quick_periods=0.25,
-        pair_styles=("granular", "gran/hertz/history"),
-        skin=0.4,
-        shared_out=True,
-    ),
-    Case(
+    FRICTIONAL,
+    replace(
+        FRICTIONAL,
         name="frictional-long",
         title="the same, L = 1,440",
-        preset="frictional",
-        settings={"drive.force_amplitude": 0.005, "tube.waves": 72, "initial.state": "rest"},
+        settings=FRICTIONAL.settings | {"tube.waves": 72},
         periods=0.2,
         quick_periods=0.05,
         pair_styles=("granular",),
-        skin=0.4,
-        shared_out=True,
     ),
 )

@@ -1,9 +1,11 @@
 //! An experiment with its finding.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc;
 
 use crate::claim::Claim;
 use crate::error::ReproduceError;
+use crate::evidence::Evidence;
 use crate::finding::{Finding, Statistics, Verdict};
 
 /// An experiment, a claim or a textbook case, with its finding.
@@ -45,6 +47,29 @@ impl<E> Examination<E> {
     pub fn passed(&self) -> bool {
         self.finding.verdict == Verdict::Reproduced
     }
+}
+
+/// Examines claims side by side; `answered` takes the outcome of each, with the claim's place, as it comes.
+pub(crate) fn examine(
+    claims: Vec<(usize, Claim)>,
+    evidence: &Evidence,
+    mut answered: impl FnMut(usize, Result<Finding, ReproduceError>),
+) {
+    let (sender, receiver) = mpsc::channel();
+    rayon::in_place_scope(|scope| {
+        for (place, claim) in claims {
+            let sender = sender.clone();
+            scope.spawn(move |_| {
+                let outcome = without_panic(|| (claim.examine)(evidence));
+                // The receiver goes after the last answer.
+                let _ = sender.send((place, outcome));
+            });
+        }
+        drop(sender);
+        for (place, outcome) in receiver {
+            answered(place, outcome);
+        }
+    });
 }
 
 /// Calls an examination; a panic, which is a bug in this one, costs no other.

@@ -7,7 +7,6 @@ mod published;
 mod sample;
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use peristalsis_study::{
@@ -17,7 +16,7 @@ use peristalsis_study::{
 use crate::claim::Claim;
 use crate::error::{ReproduceError, make_folder};
 use crate::evidence::Evidence;
-use crate::examination::{Examination, experiments_named, without_panic};
+use crate::examination::{Examination, examine, experiments_named};
 use crate::finding::Finding;
 use crate::studies::{Products, Size, StudyFile};
 pub use import::{Import, ImportedRuns};
@@ -456,47 +455,21 @@ impl<'a> Course<'a> {
 
     /// Examines the claims whose studies have all ended, side by side.
     fn examine_what_has_ended(&mut self) {
-        let is_ready = |claim: &Claim| {
-            let mut studies = claim.all_studies().into_iter();
-            studies.all(|name| self.study(name).is_some_and(|study| study.has_ended))
-        };
-        let places = 0..self.claims.len();
-        let ready: Vec<(usize, Claim)> = places
-            .filter(|&place| self.examinations[place].is_none())
-            .map(|place| (place, self.claims[place]))
-            .filter(|(_, claim)| is_ready(claim))
-            .collect();
-        let Self {
-            evidence,
-            studies,
-            claims,
-            examinations,
-            watch,
-            ..
-        } = self;
-        let evidence = &*evidence;
-        let (sender, receiver) = mpsc::channel();
-        rayon::in_place_scope(|scope| {
-            for (place, claim) in ready {
-                let sender = sender.clone();
-                scope.spawn(move |_| {
-                    let outcome = without_panic(|| (claim.examine)(evidence));
-                    // The receiver goes after the last answer.
-                    let _ = sender.send((place, outcome));
-                });
-            }
-            drop(sender);
-            for (place, outcome) in receiver {
-                let examination = examination(&claims[place], outcome, studies);
-                watch(Event::Examined(&examination));
-                examinations[place] = Some(examination);
-            }
+        let has_ended = |name| study_of(&self.studies, name).is_some_and(|study| study.has_ended);
+        let all = self.claims.iter().copied().enumerate();
+        let ready = all.filter(|(place, claim)| {
+            self.examinations[*place].is_none() && claim.all_studies().into_iter().all(has_ended)
+        });
+        examine(ready.collect(), &self.evidence, |place, outcome| {
+            let examination = examination(&self.claims[place], outcome, &self.studies);
+            (self.watch)(Event::Examined(&examination));
+            self.examinations[place] = Some(examination);
         });
     }
+}
 
-    fn study(&self, name: &str) -> Option<&StudyCourse<'a>> {
-        self.studies.iter().find(|study| study.name() == name)
-    }
+fn study_of<'a, 'b>(studies: &'b [StudyCourse<'a>], name: &str) -> Option<&'b StudyCourse<'a>> {
+    studies.iter().find(|study| study.name() == name)
 }
 
 /// What came out of a claim.
@@ -507,8 +480,8 @@ fn examination(
 ) -> Examination {
     // An error of a claim follows from the failure of one of its studies, if one failed.
     let failure = |name| {
-        let study = studies.iter().find(|study| study.name() == name)?;
-        Some(format!("study {name}: {}", study.failure.as_ref()?))
+        let reason = study_of(studies, name)?.failure.as_ref()?;
+        Some(format!("study {name}: {reason}"))
     };
     let outcome = outcome.map_err(|error| match error {
         ReproduceError::Panicked => error.to_string(),

@@ -1,7 +1,7 @@
 //! The listed pairs of the spheres of a section, and which of them touch.
 //!
-//! A pair across the border of two sections is in both. One pass over the pairs writes down which of them touch; the law is then evaluated for those only ([`super::contacts`]),
-//! in the order of the list. Which pairs touch does not depend on the other pairs of the list, so neither do the results.
+//! A pair across the border of two sections is in both. One pass over the pairs writes down which of them touch; the law is
+//! then evaluated for those only ([`super::contacts`]), in the order of the list. Which pairs touch does not depend on the other pairs of the list, so neither do the results.
 
 use peristalsis_physics::real::Real;
 
