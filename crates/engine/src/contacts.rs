@@ -64,30 +64,45 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
             .pairs
             .outdated(&bodies.position, &bodies.turns, length, skin)
         {
-            self.rebuild(bodies, wall, skin, None, &Threads::default());
+            self.rebuild(bodies, wall, skin, &Threads::default());
         }
     }
 
-    /// Makes the neighbour list anew; `held` as in [`Neighbours::rebuild`].
-    pub(crate) fn rebuild(
+    /// Makes the neighbour list anew.
+    pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64, threads: &Threads) {
+        let rule = rule(bodies, wall, skin + self.range);
+        self.pairs
+            .rebuild(&bodies.position, &bodies.turns, &rule, threads);
+    }
+
+    /// The same while others keep the histories, as [`Neighbours::rebuild_fresh`].
+    pub(crate) fn rebuild_fresh(
         &mut self,
         bodies: &Bodies,
         wall: &Wall,
         skin: f64,
-        held: Option<&[u32]>,
         threads: &Threads,
     ) {
-        let grains = bodies.grains;
-        let rule = PairRule {
-            diameter: &bodies.diameter,
-            length: wall.length(),
-            skin: skin + self.range,
-            half_width: wall.usual_radius(),
-            admits_all_below: grains,
-            admits: |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
-        };
+        let rule = rule(bodies, wall, skin + self.range);
         self.pairs
-            .rebuild(&bodies.position, &bodies.turns, &rule, held, threads);
+            .rebuild_fresh(&bodies.position, &bodies.turns, &rule, threads);
+    }
+}
+
+/// Which pairs are listed.
+fn rule<'a>(
+    bodies: &'a Bodies,
+    wall: &'a Wall,
+    skin: f64,
+) -> PairRule<'a, impl Fn(usize, usize) -> bool + Sync> {
+    let grains = bodies.grains;
+    PairRule {
+        diameter: &bodies.diameter,
+        length: wall.length(),
+        skin,
+        half_width: wall.usual_radius(),
+        admits_all_below: grains,
+        admits: move |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
     }
 }
 

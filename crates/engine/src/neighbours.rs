@@ -35,10 +35,8 @@ pub(crate) struct Neighbours<H> {
     late_cells: Cells,
     pieces: Vec<Piece>,
     collecting: Collecting,
-    /// Pairs that remember a contact, as (i, j, place in the list), when the list was last made.
+    /// Room: pairs that remember a contact, as (i, j, place in the list before).
     remembered: Vec<[u32; 3]>,
-    /// Places of the histories that moved when the list was made.
-    moved: Vec<u32>,
 }
 
 /// The last spheres, of whose pairs with each other not all are admitted (those of an elastic wall), as they were when these
@@ -71,7 +69,6 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             pieces: Vec::new(),
             collecting: Collecting::default(),
             remembered: Vec::new(),
-            moved: Vec::new(),
         }
     }
 
@@ -113,12 +110,11 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
 
     /// The same, to be changed.
     pub(crate) fn histories_mut(&mut self) -> &mut [H] {
-        &mut self.rows.history
-    }
-
-    /// Places in [`Neighbours::histories`] of all that were no fresh ones when the list was made, in order.
-    pub(crate) fn moved(&self) -> &[u32] {
-        &self.moved
+        let Rows {
+            partner, history, ..
+        } = &mut self.rows;
+        history.resize(partner.len(), H::default());
+        history
     }
 
     /// All pairs with their histories, in order.
@@ -132,9 +128,14 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         })
     }
 
+    /// The place of a pair in the list, if it is listed.
+    pub(crate) fn place(&self, i: u32, j: u32) -> Option<usize> {
+        self.rows.place(i as usize, j)
+    }
+
     /// Sets the history of a listed pair; `false` where the pair is not listed.
     pub(crate) fn set_history(&mut self, i: u32, j: u32, history: H) -> bool {
-        let place = self.rows.place(i as usize, j);
+        let place = self.place(i, j);
         if let Some(place) = place {
             self.rows.history[place] = history;
         }
@@ -171,14 +172,42 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     }
 
     /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, perhaps some farther ones, and those that
-    /// still remember a contact, in a time that grows linearly with the number of spheres. `held` are the places of the
-    /// latter in the list before, in order, where others keep the histories; else histories move with their pairs.
+    /// still remember a contact, in a time that grows linearly with the number of spheres. Histories move with their pairs.
     pub(crate) fn rebuild<F: Fn(usize, usize) -> bool + Sync>(
         &mut self,
         position: &[DVec3],
         turns: &[i32],
         rule: &PairRule<'_, F>,
-        held: Option<&[u32]>,
+        threads: &Threads,
+    ) where
+        H: Sync,
+    {
+        self.collect(position, turns, rule, threads);
+        self.move_histories();
+        core::mem::swap(&mut self.rows, &mut self.next);
+    }
+
+    /// The same while others keep the histories: all here are fresh, and none is looked at before
+    /// [`Neighbours::histories_mut`].
+    pub(crate) fn rebuild_fresh<F: Fn(usize, usize) -> bool + Sync>(
+        &mut self,
+        position: &[DVec3],
+        turns: &[i32],
+        rule: &PairRule<'_, F>,
+        threads: &Threads,
+    ) where
+        H: Sync,
+    {
+        self.collect(position, turns, rule, threads);
+        core::mem::swap(&mut self.rows, &mut self.next);
+    }
+
+    /// Makes the rows to come, without histories.
+    fn collect<F: Fn(usize, usize) -> bool + Sync>(
+        &mut self,
+        position: &[DVec3],
+        turns: &[i32],
+        rule: &PairRule<'_, F>,
         threads: &Threads,
     ) where
         H: Sync,
@@ -202,37 +231,46 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             rule.length,
             threads,
         );
-        self.remember(held);
-        let Self { rows, next, .. } = self;
+        let Self { next, .. } = self;
         let found = [&self.pieces[..], &self.late.found];
         next.collect(position.len(), found, &mut self.collecting, threads);
-        self.moved.clear();
-        let place = |&[i, j, _]: &[u32; 3]| next.place(i as usize, j).map(|place| place as u32);
-        self.moved.extend(self.remembered.iter().map_while(place));
-        if self.moved.len() < self.remembered.len() {
-            // Contacts that ended in this very step are listed once more, however far their spheres have jumped: what they
-            // remember must be accounted for.
-            let is_far = |&&[i, j, _]: &&[u32; 3]| next.place(i as usize, j).is_none();
-            let far = self.remembered.iter().filter(is_far);
-            let far: Vec<_> = far.map(|&[i, j, _]| (i, j)).collect();
-            next.insert(&far);
-            self.moved.clear();
-            let place = |&[i, j, _]: &[u32; 3]| next.place(i as usize, j).map(|place| place as u32);
-            self.moved.extend(self.remembered.iter().filter_map(place));
-        }
-        debug_assert_eq!(self.moved.len(), self.remembered.len());
-        next.history.resize(next.partner.len(), H::default());
-        if held.is_none() {
-            // Only histories of contacts need be moved; the old list keeps fresh ones alone.
-            for (&to, &[.., at]) in self.moved.iter().zip(&self.remembered) {
-                next.history[to as usize] = core::mem::take(&mut rows.history[at as usize]);
-            }
-        }
-        core::mem::swap(&mut self.rows, &mut self.next);
         self.skin = rule.skin;
         self.origin.clear();
         self.origin.extend(unfolded);
-        debug_assert_eq!(self.rows(), position.len());
+        debug_assert_eq!(next.start.len(), position.len() + 1);
+    }
+
+    /// Moves the histories that are no fresh ones to the rows to come; the rows of now keep fresh ones alone.
+    fn move_histories(&mut self) {
+        let Self {
+            rows,
+            next,
+            remembered,
+            ..
+        } = self;
+        remembered.clear();
+        for row in 0..rows.start.len() - 1 {
+            for at in rows.range(row) {
+                if rows.history[at] != H::default() {
+                    remembered.push([row as u32, rows.partner[at], at as u32]);
+                }
+            }
+        }
+        let place = |next: &Rows<H>, i: u32, j: u32| next.place(i as usize, j);
+        // Contacts that ended in this very step are listed once more, however far their spheres have jumped: what they
+        // remember must be accounted for.
+        let is_far = |&&[i, j, _]: &&[u32; 3]| place(next, i, j).is_none();
+        let far = remembered.iter().filter(is_far);
+        let far: Vec<_> = far.map(|&[i, j, _]| (i, j)).collect();
+        if !far.is_empty() {
+            next.insert(&far);
+        }
+        next.history.resize(next.partner.len(), H::default());
+        for &[i, j, at] in &*remembered {
+            if let Some(to) = place(next, i, j) {
+                next.history[to] = core::mem::take(&mut rows.history[at as usize]);
+            }
+        }
     }
 
     /// Searches for the pairs of late spheres, unless what was found before holds all that are wanted.
@@ -274,28 +312,6 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         threads.each(&mut late.found, (), &|_| 0, &|piece, ()| {
             piece.found.retain(&rule.admits);
         });
-    }
-
-    /// Writes down the pairs that remember a contact, at `held` places of the list or wherever a history is no fresh one.
-    fn remember(&mut self, held: Option<&[u32]>) {
-        let Self {
-            rows, remembered, ..
-        } = self;
-        remembered.clear();
-        let mut i = 0;
-        let mut remember = |at: u32| {
-            while rows.start[i + 1] <= at {
-                i += 1;
-            }
-            remembered.push([i as u32, rows.partner[at as usize], at]);
-        };
-        match held {
-            Some(held) => held.iter().copied().for_each(remember),
-            None => (0..)
-                .zip(&rows.history)
-                .filter(|(_, history)| **history != H::default())
-                .for_each(|(at, _)| remember(at)),
-        }
     }
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     wall: &Wall,
     contacts: &mut Contacts<T::History<f64>>,
 ) -> Vec<Touching> {
-    contacts.rebuild(bodies, wall, 0.0, None, &Threads::default());
+    contacts.rebuild(bodies, wall, 0.0, &Threads::default());
     let mut found = Vec::new();
     for first in 0..bodies.number() {
         let here = bodies.sphere(first);

@@ -179,14 +179,38 @@ impl Gathered {
     }
 }
 
-/// Adds up the terms of the contacts of all sections, row after row, as if they stood one after the other in the lanes.
-pub(super) struct AddContacts<'a> {
-    pub(super) pairs: &'a [[Pairs; 2]],
-    pub(super) gathered: &'a [Gathered],
-    pub(super) tally: &'a mut Tally,
+/// Lanes whose sums a thread adds up: what it reads of their terms are whole lines of the cache.
+const LANES_IN_TURN: usize = 2;
+
+/// Sums of some lanes over the terms of all contacts, which the lanes take in turn, row after row.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct InTurn {
+    /// The first of the lanes.
+    first: usize,
+    losses: [Record; LANES_IN_TURN],
+    rest: [Record; LANES_IN_TURN],
+    /// The losses of contacts of the wall with itself.
+    of_wall: [Record; LANES_IN_TURN],
 }
 
-impl Work for AddContacts<'_> {
+impl InTurn {
+    /// For all lanes.
+    pub(super) fn all() -> [Self; LANES / LANES_IN_TURN] {
+        core::array::from_fn(|number| Self {
+            first: number * LANES_IN_TURN,
+            ..Self::default()
+        })
+    }
+}
+
+/// Adds up the terms that are for some of the lanes.
+pub(super) struct AddInTurn<'a> {
+    pub(super) pairs: &'a [[Pairs; 2]],
+    pub(super) gathered: &'a [Gathered],
+    pub(super) lanes: &'a mut InTurn,
+}
+
+impl Work for AddInTurn<'_> {
     type Answer = ();
 
     #[inline(always)]
@@ -194,84 +218,75 @@ impl Work for AddContacts<'_> {
         let Self {
             pairs,
             gathered,
-            tally,
+            lanes,
         } = self;
-        let (mut losses, mut rest) = (InTurn::<M>::new(), InTurn::<M>::new());
-        for gathered in gathered {
-            losses.add(&gathered.losses);
-            rest.add(&gathered.rest);
-        }
-        let [normal, tangential, sliding, energy] = losses.added().0;
-        tally.normal_dissipation += normal;
-        tally.tangential_lost += tangential;
-        tally.sliding_lost += sliding;
-        tally.contact_energy += energy;
-        let [overlap, axial_force, ..] = rest.added().0;
-        tally.total_overlap += overlap;
-        tally.wall_axial_force += axial_force;
-        for [Pairs { terms, .. }, _] in pairs {
-            let [with_grains, with_wall, that_slide] = terms.numbers;
-            tally.grain_contacts += with_grains;
-            tally.wall_contacts += with_wall;
-            tally.sliding_contacts += that_slide;
-            tally.largest_overlap = tally.largest_overlap.max(terms.largest_overlap);
-        }
-        // Contacts of wall spheres with each other are no contacts of grains.
-        let mut of_wall = InTurn::<M>::new();
-        for [_, Pairs { terms, .. }] in pairs {
-            of_wall.add(&terms.losses[..terms.contacts]);
-        }
-        let [normal, _, _, energy] = of_wall.added().0;
-        tally.normal_dissipation += normal;
-        tally.contact_energy += energy;
+        let of_wall = pairs.iter().map(|[_, Pairs { terms, .. }]| terms);
+        let of_wall = of_wall.map(|terms| &terms.losses[..terms.contacts]);
+        let of_grains = gathered.iter().map(|gathered| &gathered.losses[..]);
+        let rest = gathered.iter().map(|gathered| &gathered.rest[..]);
+        lanes.losses = add_in_turn::<M>(of_grains, lanes.first);
+        lanes.rest = add_in_turn::<M>(rest, lanes.first);
+        lanes.of_wall = add_in_turn::<M>(of_wall, lanes.first);
     }
 }
 
-/// Eight sums of four numbers, which records take in turn.
-struct InTurn<M: Machine> {
-    /// Whose turn it is.
-    lane: usize,
-    sums: [Quad<M>; LANES],
-}
-
-impl<M: Machine> InTurn<M> {
-    #[inline(always)]
-    fn new() -> Self {
-        Self {
-            lane: 0,
-            sums: [Quad::<M>::splat(0.0); LANES],
+/// The sums of the lanes from `first` on, of records that stand one after the other in the lanes.
+#[inline(always)]
+fn add_in_turn<'a, M: Machine>(
+    stretches: impl Iterator<Item = &'a [Record]>,
+    first: usize,
+) -> [Record; LANES_IN_TURN] {
+    let mut sums = [Quad::<M>::splat(0.0); LANES_IN_TURN];
+    // Records until the turn of the first of these lanes.
+    let mut wait = first;
+    for records in stretches {
+        // The turn of the others may have come already.
+        for (record, turn) in records.iter().zip(LANES - wait..LANES_IN_TURN) {
+            sums[turn] = sums[turn] + record.quad();
         }
-    }
-
-    #[inline(always)]
-    fn add(&mut self, records: &[Record]) {
-        let until_first = (LANES - self.lane) % LANES;
-        let (before, records) = records.split_at(until_first.min(records.len()));
-        let (eights, after) = records.as_chunks::<LANES>();
-        self.add_each(before);
-        for eight in eights {
-            for (sum, record) in self.sums.iter_mut().zip(eight) {
+        for turns in records.get(wait..).unwrap_or_default().chunks(LANES) {
+            for (sum, record) in sums.iter_mut().zip(turns) {
                 *sum = *sum + record.quad();
             }
         }
-        self.add_each(after);
+        wait = (wait + LANES - records.len() % LANES) % LANES;
     }
+    sums.map(Quad::<M>::record)
+}
 
-    #[inline(always)]
-    fn add_each(&mut self, records: &[Record]) {
-        for record in records {
-            let sum = &mut self.sums[self.lane];
-            *sum = *sum + record.quad();
-            self.lane = (self.lane + 1) % LANES;
-        }
+/// Adds the sums of all contacts to a tally.
+pub(super) fn add_contacts(
+    pairs: &[[Pairs; 2]],
+    lanes: &[InTurn; LANES / LANES_IN_TURN],
+    tally: &mut Tally,
+) {
+    // As [`Lanes::sum`] adds the lanes.
+    let sum = |of: fn(&InTurn) -> [Record; LANES_IN_TURN]| {
+        let [[a, b], [c, d], [e, f], [g, h]] = lanes.each_ref().map(of);
+        core::array::from_fn(|number| {
+            let [a, b, c, d, e, f, g, h] = [a, b, c, d, e, f, g, h].map(|sum| sum.0[number]);
+            ((a + e) + (c + g)) + ((b + f) + (d + h))
+        })
+    };
+    let [normal, tangential, sliding, energy]: [f64; 4] = sum(|lanes| lanes.losses);
+    tally.normal_dissipation += normal;
+    tally.tangential_lost += tangential;
+    tally.sliding_lost += sliding;
+    tally.contact_energy += energy;
+    let [overlap, axial_force, ..]: [f64; 4] = sum(|lanes| lanes.rest);
+    tally.total_overlap += overlap;
+    tally.wall_axial_force += axial_force;
+    for [Pairs { terms, .. }, _] in pairs {
+        let [with_grains, with_wall, that_slide] = terms.numbers;
+        tally.grain_contacts += with_grains;
+        tally.wall_contacts += with_wall;
+        tally.sliding_contacts += that_slide;
+        tally.largest_overlap = tally.largest_overlap.max(terms.largest_overlap);
     }
-
-    /// The sum over the lanes, as [`Lanes::sum`] adds them.
-    #[inline(always)]
-    fn added(self) -> Record {
-        let [a, b, c, d, e, f, g, h] = self.sums;
-        (((a + e) + (c + g)) + ((b + f) + (d + h))).record()
-    }
+    // Contacts of wall spheres with each other are no contacts of grains.
+    let [normal, _, _, energy]: [f64; 4] = sum(|lanes| lanes.of_wall);
+    tally.normal_dissipation += normal;
+    tally.contact_energy += energy;
 }
 
 /// Adds up the terms of the rings of all sections.

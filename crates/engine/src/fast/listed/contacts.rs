@@ -37,6 +37,8 @@ pub(super) struct PairForces<'a, N, T: PackedHistory> {
     pub(super) pairs: &'a mut Pairs,
     pub(super) of_grains: bool,
     pub(super) spheres: Moving<'a>,
+    /// Their numbers.
+    pub(super) number: &'a [u32],
     pub(super) forces: &'a mut Forces,
     pub(super) length: f64,
     pub(super) time_step: f64,
@@ -53,12 +55,16 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
     fn run<M: Machine>(mut self) {
         let own = self.forces.own;
         self.pairs.terms.clear(own, 0, false);
-        self.pairs.ended.clear();
-        if self.pairs.near.first.is_empty() && self.pairs.touched.is_empty() {
+        if self.pairs.near.first.is_empty() && self.pairs.memory.is_empty() {
             return;
         }
         let Pairs { near, touching, .. } = &mut *self.pairs;
         near.find::<M>(self.spheres.position, self.length, 0.0, touching);
+        let remembers = T::ROTATES && self.of_grains;
+        if remembers {
+            self.pairs
+                .begin_contacts(&self.law.tangential, own, self.number);
+        }
         match self.tally.take() {
             Some(tally) => {
                 let mut sums = Sums::<M>::default();
@@ -79,8 +85,8 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
                 self.pairs.terms = terms;
             }
         }
-        if T::ROTATES && self.of_grains {
-            self.pairs.end_histories(&self.law.tangential, own);
+        if remembers {
+            self.pairs.memory.end();
         }
     }
 }
@@ -118,16 +124,15 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
     let force = &mut forces.force[..];
     // Of one length: looked at once.
     let torque = &mut forces.torque[..force.len()];
-    let histories = &mut pairs.histories[..];
+    let memory = &mut pairs.memory;
     let zero = Lanes::<M>::splat(0.0);
-    for block in pairs.touching.chunks(LANES) {
+    for (start, block) in (0..).step_by(LANES).zip(pairs.touching.chunks(LANES)) {
         let contacts = block.len();
         // Lanes to spare do the last contact again, to no effect.
         let near = match block.first_chunk() {
             Some(whole) => *whole,
             None => core::array::from_fn(|lane| block[lane.min(contacts - 1)]),
         };
-        let pair = eight_of(&pairs.number, &near).map(|&pair| pair);
         let first = eight_of(&pairs.near.first, &near).map(|&place| place);
         let second = eight_of(&pairs.near.second, &near).map(|&place| place);
         let nothing = Quad::<M>::splat(0.0);
@@ -153,9 +158,9 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
         if T::ROTATES {
             contact.rotation = turning_i * arms.0 + turning_j * arms.1;
         }
-        let mut history = T::into_lanes::<M>(histories, &pair);
+        let mut history = T::recall::<M>(memory, start);
         let answer = law.force(&contact, &mut history, time_step);
-        T::from_lanes::<M>(&history, histories, &pair[..contacts]);
+        T::keep::<M>(&history, memory, start);
         let on_first = record::from_lanes(answer.force, zero);
         let per_arm = record::from_lanes(answer.torque_per_arm, zero);
         let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());

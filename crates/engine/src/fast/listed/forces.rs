@@ -2,10 +2,11 @@
 
 use peristalsis_physics::contact::NormalLaw;
 
-use super::book::{AddContacts, AddRings, Gathered};
+use super::book::{AddInTurn, AddRings, Gathered, InTurn, add_contacts};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
 use super::network::{WallForces, mean_force};
+use super::pairs::{Ended, Pairs};
 use super::section::{BesideWall, Shares};
 use super::spheres::GrainsMut;
 use super::{Listed, Scratch};
@@ -21,6 +22,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             instructions,
             spheres,
             shares,
+            ended,
             ..
         } = &mut *self.scratch;
         let (Some(section), Some([of_grains, of_wall])) =
@@ -28,7 +30,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         else {
             return;
         };
-        let places = &spheres.place[spheres.grains..];
+        let (number, places) = (&spheres.number[..], &spheres.place[spheres.grains..]);
         let spheres = spheres.moving();
         let mut sums_of_wall = Tally::default();
         for (pairs, of_grains, tally) in [
@@ -40,6 +42,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                 pairs,
                 of_grains,
                 spheres,
+                number,
                 forces: &mut section.forces,
                 length,
                 time_step,
@@ -47,9 +50,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                 complete,
             });
         }
-        for (_, energy) in &of_grains.ended {
-            tally.history_reset += energy;
-        }
+        add_ended(&mut shares.pairs, ended, tally);
         // Contacts of wall spheres with each other are no contacts of grains.
         tally.contact_energy += sums_of_wall.contact_energy;
         tally.normal_dissipation += sums_of_wall.normal_dissipation;
@@ -92,7 +93,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         } = &mut *self.scratch;
         let instructions = *instructions;
         let grains = spheres.grains;
-        let place = &spheres.place[..];
+        let (number, place) = (&spheres.number[..], &spheres.place[..]);
         let spheres = spheres.moving();
         let elastic = wall.elastic();
         let Shares {
@@ -116,6 +117,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                             pairs,
                             of_grains,
                             spheres,
+                            number,
                             forces: &mut section.forces,
                             length,
                             time_step,
@@ -166,17 +168,17 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                 },
             );
         }
-        instructions.run(AddContacts {
-            pairs,
-            gathered,
-            tally,
+        let gathered = &gathered[..];
+        let mut lanes = InTurn::all();
+        threads.each(&mut lanes, (), &|_| 0, &|lanes, ()| {
+            instructions.run(AddInTurn {
+                pairs,
+                gathered,
+                lanes,
+            });
         });
-        ended.clear();
-        ended.extend(pairs.iter().flat_map(|[of_grains, _]| &of_grains.ended));
-        ended.sort_unstable_by_key(|(at, _)| *at);
-        for (_, energy) in ended {
-            tally.history_reset += *energy;
-        }
+        add_contacts(pairs, &lanes, tally);
+        add_ended(&mut shares.pairs, ended, tally);
         let Some(elastic) = elastic else {
             for &section in section_of {
                 self.beside_wall[section as usize].sums.add_row(tally);
@@ -192,5 +194,17 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             tally,
         });
         self.mean_wall_force = mean_force(elastic, rings(), tally);
+    }
+}
+
+/// Adds what contacts that ended have left, in the order of the list, and forgets them.
+fn add_ended(pairs: &mut [[Pairs; 2]], room: &mut Vec<Ended>, tally: &mut Tally) {
+    room.clear();
+    for [of_grains, _] in pairs {
+        room.append(&mut of_grains.ended);
+    }
+    room.sort_unstable_by_key(|ended| ended.spheres);
+    for ended in &*room {
+        tally.history_reset += ended.energy;
     }
 }

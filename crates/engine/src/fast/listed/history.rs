@@ -10,17 +10,127 @@ use crate::fast::machine::{Machine, eight_of};
 /// A history in eight numbers.
 pub(crate) type Packed = [Record; 2];
 
+/// Histories of the pairs that touched at the last evaluation, one after the other.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Memory {
+    /// Which pairs of the list they are, in order.
+    touched: Vec<u32>,
+    before: Vec<Packed>,
+    /// Where the history of each contact of an evaluation is among those before; filled up to whole eights.
+    from: Vec<u32>,
+    /// With what history the evaluation leaves each contact; filled up likewise.
+    after: Vec<Packed>,
+    /// Room: the pairs that touch.
+    touching: Vec<u32>,
+    /// From one list to the next: the spheres of each pair.
+    spheres: Vec<[u32; 2]>,
+}
+
+impl Memory {
+    pub(super) fn clear(&mut self) {
+        self.touched.clear();
+        self.before.clear();
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.touched.is_empty()
+    }
+
+    /// Remembers a pair behind all others.
+    pub(super) fn push(&mut self, pair: u32, history: Packed) {
+        self.touched.push(pair);
+        self.before.push(history);
+    }
+
+    /// Which pairs of the list are remembered, and how.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &Packed)> {
+        let pairs = self.touched.iter().map(|&pair| pair as usize);
+        pairs.zip(&self.before)
+    }
+
+    /// Writes down the spheres of the pairs.
+    pub(super) fn note(&mut self, spheres: impl Fn(usize) -> [u32; 2]) {
+        self.spheres.clear();
+        let pairs = self.touched.iter().map(|&pair| pair as usize);
+        self.spheres.extend(pairs.map(spheres));
+    }
+
+    /// Finds each of them among the pairs of a new list, or forgets it.
+    pub(super) fn find_again(&mut self, mut pair: impl FnMut([u32; 2], &Packed) -> Option<u32>) {
+        let Self {
+            touched,
+            before,
+            after,
+            spheres,
+            ..
+        } = self;
+        touched.clear();
+        after.clear();
+        for (&spheres, history) in spheres.iter().zip(&*before) {
+            if let Some(pair) = pair(spheres, history) {
+                touched.push(pair);
+                after.push(*history);
+            }
+        }
+        core::mem::swap(before, after);
+    }
+
+    /// Before an evaluation: finds the history of each pair that touches, and tells of those that touch no more. Pairs come in
+    /// their order.
+    pub(super) fn begin(
+        &mut self,
+        pairs: impl Iterator<Item = u32>,
+        mut ended: impl FnMut(usize, &Packed),
+    ) {
+        let Self {
+            touched,
+            before,
+            from,
+            after,
+            touching,
+            ..
+        } = self;
+        before.truncate(touched.len());
+        let mut remembered = touched.iter().zip(&*before).enumerate().peekable();
+        let fresh = touched.len() as u32;
+        touching.clear();
+        from.clear();
+        for pair in pairs {
+            while let Some((_, (&past, history))) =
+                remembered.next_if(|(_, (past, _))| **past < pair)
+            {
+                ended(past as usize, history);
+            }
+            let own = remembered.next_if(|(_, (past, _))| **past == pair);
+            from.push(own.map_or(fresh, |(place, _)| place as u32));
+            touching.push(pair);
+        }
+        for (_, (&past, history)) in remembered {
+            ended(past as usize, history);
+        }
+        before.push(Packed::default());
+        from.resize(from.len().next_multiple_of(LANES), fresh);
+        after.resize(from.len(), Packed::default());
+        core::mem::swap(touched, touching);
+    }
+
+    /// After an evaluation.
+    pub(super) fn end(&mut self) {
+        core::mem::swap(&mut self.before, &mut self.after);
+    }
+}
+
 /// A tangential law whose histories can be packed, and turned into lanes and back.
 pub(crate) trait PackedHistory: TangentialLaw {
     fn pack(history: &Self::History<f64>) -> [Record; 2];
 
     fn unpack(packed: &[Record; 2]) -> Self::History<f64>;
 
-    /// Histories of a list, side by side.
-    fn into_lanes<M: Machine>(packed: &[Packed], at: &[u32; LANES]) -> Self::History<Lanes<M>>;
+    /// The histories of the eight contacts from `start` on, as they were before the evaluation.
+    fn recall<M: Machine>(memory: &Memory, start: usize) -> Self::History<Lanes<M>>;
 
-    /// Packs the histories of the first so many lanes into the list.
-    fn from_lanes<M: Machine>(history: &Self::History<Lanes<M>>, packed: &mut [Packed], at: &[u32]);
+    /// Keeps the histories of the eight contacts from `start` on.
+    fn keep<M: Machine>(history: &Self::History<Lanes<M>>, memory: &mut Memory, start: usize);
 }
 
 impl PackedHistory for Frictionless {
@@ -31,10 +141,10 @@ impl PackedHistory for Frictionless {
     fn unpack(_: &Packed) {}
 
     #[inline(always)]
-    fn into_lanes<M: Machine>(_: &[Packed], _: &[u32; LANES]) {}
+    fn recall<M: Machine>(_: &Memory, _: usize) {}
 
     #[inline(always)]
-    fn from_lanes<M: Machine>((): &(), _: &mut [Packed], _: &[u32]) {}
+    fn keep<M: Machine>((): &(), _: &mut Memory, _: usize) {}
 }
 
 impl PackedHistory for CundallStrack {
@@ -55,10 +165,11 @@ impl PackedHistory for CundallStrack {
     }
 
     #[inline(always)]
-    fn into_lanes<M: Machine>(packed: &[Packed], at: &[u32; LANES]) -> TangentialHistory<Lanes<M>> {
+    fn recall<M: Machine>(memory: &Memory, start: usize) -> TangentialHistory<Lanes<M>> {
         let mut first = [Quad::<M>::splat(0.0); LANES];
         let mut second = first;
-        let packed = eight_of(packed, at);
+        let from = memory.from[start..].first_chunk().expect("whole eights");
+        let packed = eight_of(&memory.before, from);
         for lane in 0..LANES {
             let [one, other] = packed[lane];
             first[lane] = one.quad();
@@ -75,16 +186,13 @@ impl PackedHistory for CundallStrack {
     }
 
     #[inline(always)]
-    fn from_lanes<M: Machine>(
-        history: &TangentialHistory<Lanes<M>>,
-        packed: &mut [Packed],
-        at: &[u32],
-    ) {
+    fn keep<M: Machine>(history: &TangentialHistory<Lanes<M>>, memory: &mut Memory, start: usize) {
         let sliding = Lanes::select(history.sliding, Lanes::splat(1.0), Lanes::splat(0.0));
         let first = record::from_lanes(history.displacement, history.power);
         let second = record::from_lanes(history.rate, sliding);
-        for (lane, &at) in at.iter().enumerate() {
-            packed[at as usize] = [first[lane].record(), second[lane].record()];
+        let after = memory.after[start..].first_chunk_mut::<LANES>();
+        for (lane, packed) in after.expect("whole eights").iter_mut().enumerate() {
+            *packed = [first[lane].record(), second[lane].record()];
         }
     }
 }

@@ -21,7 +21,7 @@ use peristalsis_physics::contact::NormalLaw;
 
 use self::history::PackedHistory;
 use self::motion::{Motion, Moved, Stage, Travel};
-use self::pairs::Prune;
+use self::pairs::{Ended, Prune};
 use self::record::Record;
 use self::section::{BesideWall, Section, Shares};
 use self::spheres::Spheres;
@@ -45,14 +45,8 @@ pub(crate) struct Scratch {
     pub(crate) threads: Threads,
     spheres: Spheres,
     shares: Shares,
-    /// Places in the list of all that remember a contact.
-    held: Vec<u32>,
-    /// The section that hands each of them over, and which of its own it is.
-    holders: Vec<(u16, u32)>,
-    /// Room: of each section the next.
-    next: Vec<usize>,
     /// Room: contacts of all sections that have ended.
-    ended: Vec<(u32, f64)>,
+    ended: Vec<Ended>,
 }
 
 /// The list is made for so many skins.
@@ -119,6 +113,50 @@ impl Scratch {
         }
     }
 
+    /// Takes up spheres and contacts of the reference kernel, whose histories are fresh then; answers the sections' contacts
+    /// with a prescribed wall.
+    fn take_up<N, T: PackedHistory>(
+        &mut self,
+        reference: &mut Reference<'_, N, T>,
+        wall: &Wall,
+    ) -> Vec<BesideWall<T::History<f64>>> {
+        self.share_out(reference, wall);
+        let beside_wall = self.beside_wall(reference, wall);
+        self.load_pairs(reference);
+        let list = &mut reference.contacts.pairs;
+        for [of_grains, _] in &mut self.shares.pairs {
+            of_grains.take_up::<T>(list.histories());
+        }
+        for [of_grains, _] in &self.shares.pairs {
+            of_grains.freshen(list.histories_mut());
+        }
+        beside_wall
+    }
+
+    /// The sections write down which pairs of spheres they remember, before the list is made anew.
+    fn note_pairs(&mut self) {
+        let number = &self.spheres.number[..];
+        let pairs = &mut self.shares.pairs[..];
+        self.threads.each(pairs, (), &|_| 0, &|[of_grains, _], ()| {
+            of_grains.note(number);
+        });
+    }
+
+    /// The sections find these pairs in their new lists.
+    fn find_pairs_again<T: PackedHistory>(&mut self, list: &Neighbours<T::History<f64>>, law: &T) {
+        let place = &self.spheres.place[..];
+        let Shares {
+            sections, pairs, ..
+        } = &mut self.shares;
+        let sections = &sections[..];
+        self.threads
+            .each(pairs, sections, &|_| 1, &|[of_grains, _], sections| {
+                for section in sections {
+                    of_grains.find_again(list, law, place, section.own);
+                }
+            });
+    }
+
     fn store_spheres(&self, bodies: &mut Bodies, past: &mut Past) {
         self.spheres.store(bodies, past);
         for section in &self.shares.sections {
@@ -146,7 +184,8 @@ impl Scratch {
         self.shares.sections.iter().map(beside).collect()
     }
 
-    /// Makes the lists of the sections from that of all, without histories.
+    /// Makes the lists of the sections from that of all; what they remember they find again with
+    /// [`Pairs::find_again`](pairs::Pairs::find_again).
     fn load_pairs<N, T: PackedHistory>(&mut self, reference: &Reference<'_, N, T>) {
         let list = &reference.contacts.pairs;
         let Self {
@@ -173,7 +212,7 @@ impl Scratch {
         let offers = &offers[..];
         threads.each(pairs, sections, &|_| 1, &|pairs, sections| {
             for section in sections {
-                section.load_pairs(pairs, list, spheres, offers, T::ROTATES);
+                section.load_pairs(pairs, list, spheres, offers);
             }
         });
         self.shares.count_borders();
@@ -198,51 +237,6 @@ impl Scratch {
         });
         let drifts = self.shares.sections.iter().map(|section| section.drift);
         drifts.fold(Drift::NONE, Drift::and)
-    }
-
-    /// Takes all histories out of the sections' lists, and writes down where in the list of all they stand, and whose each
-    /// is.
-    fn hand_over<H: Copy + Default + PartialEq>(&mut self, list: &Neighbours<H>) {
-        let Self {
-            threads,
-            spheres,
-            shares,
-            held,
-            holders,
-            next,
-            ..
-        } = self;
-        let Shares {
-            sections,
-            pairs,
-            offers,
-            section_of,
-            ..
-        } = shares;
-        let of_sections = (&mut pairs[..], &sections[..]);
-        threads.each(offers, of_sections, &|_| 1, &|offer, (pairs, sections)| {
-            for (section, [of_grains, _]) in sections.iter().zip(pairs) {
-                of_grains.hand_over(section.own, &mut offer.carried);
-            }
-        });
-        held.clear();
-        holders.clear();
-        next.clear();
-        next.resize(offers.len(), 0);
-        // Each section has its own in order, row by row.
-        let rows = spheres.grains.min(list.rows());
-        for (row, &section) in section_of[..rows].iter().enumerate() {
-            let (places, end) = (
-                &offers[section as usize].carried.places,
-                list.range(row).end,
-            );
-            let next = &mut next[section as usize];
-            while let Some(&place) = places.get(*next).filter(|&&place| (place as usize) < end) {
-                held.push(place);
-                holders.push((section, *next as u32));
-                *next += 1;
-            }
-        }
     }
 
     /// Writes the histories back to where they came from.
@@ -285,17 +279,8 @@ impl Scratch {
 }
 
 impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
-    fn begin(reference: Reference<'a, N, T>, scratch: &'a mut Scratch, wall: &Wall) -> Self {
-        scratch.share_out(&reference, wall);
-        let beside_wall = scratch.beside_wall(&reference, wall);
-        scratch.load_pairs(&reference);
-        let list = &mut reference.contacts.pairs;
-        for [of_grains, _] in &mut scratch.shares.pairs {
-            of_grains.take_up::<T>(list.histories());
-        }
-        for [of_grains, _] in &scratch.shares.pairs {
-            of_grains.freshen(list.histories_mut());
-        }
+    fn begin(mut reference: Reference<'a, N, T>, scratch: &'a mut Scratch, wall: &Wall) -> Self {
+        let beside_wall = scratch.take_up(&mut reference, wall);
         Self {
             reference,
             scratch,
@@ -394,34 +379,25 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         let Self {
             reference, scratch, ..
         } = self;
-        scratch.hand_over(&reference.contacts.pairs);
-        if scratch.shares.are_worn() {
-            scratch.store_spheres(reference.bodies, reference.past);
-            scratch.store_wall_memory::<T>(reference.contacts, &self.beside_wall);
-            scratch.share_out(reference, wall);
-            self.beside_wall = scratch.beside_wall(reference, wall);
-        } else {
-            scratch.spheres.store_places(reference.bodies);
-        }
         let skin = LISTED * reference.parameters.skin;
-        let held = Some(&scratch.held[..]);
-        let (contacts, bodies) = (&mut *reference.contacts, &*reference.bodies);
-        contacts.rebuild(bodies, wall, skin, held, &scratch.threads);
-        scratch.load_pairs(reference);
-        let places = self.reference.contacts.pairs.moved();
-        let Scratch {
-            threads,
-            shares,
-            holders,
+        let Reference {
+            bodies,
+            past,
+            contacts,
             ..
-        } = &mut *self.scratch;
-        let (offers, holders) = (&shares.offers[..], &holders[..]);
-        threads.each(&mut shares.pairs, (), &|_| 0, &|[of_grains, _], ()| {
-            of_grains.carry_on(places, |history| {
-                let (section, which) = holders[history];
-                &offers[section as usize].carried.histories[which as usize]
-            });
-        });
+        } = reference;
+        if scratch.shares.are_worn() {
+            scratch.store_spheres(bodies, past);
+            scratch.store_histories::<T>(contacts, &self.beside_wall);
+            contacts.rebuild(bodies, wall, skin, &scratch.threads);
+            self.beside_wall = scratch.take_up(reference, wall);
+            return;
+        }
+        scratch.spheres.store_places(bodies);
+        scratch.note_pairs();
+        contacts.rebuild_fresh(bodies, wall, skin, &scratch.threads);
+        scratch.load_pairs(reference);
+        scratch.find_pairs_again(&reference.contacts.pairs, &reference.law.tangential);
     }
 }
 

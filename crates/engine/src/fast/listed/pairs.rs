@@ -6,7 +6,7 @@
 use peristalsis_physics::real::Real;
 
 use super::book::RowTerms;
-use super::history::{Packed, PackedHistory};
+use super::history::{Memory, Packed, PackedHistory};
 use super::record::{self, Record};
 use super::spheres::{Own, Spheres};
 use crate::fast::lanes::{LANES, Lanes, Quad};
@@ -98,11 +98,12 @@ pub(super) struct Border {
     pub(super) at: u32,
 }
 
-/// Histories on their way from one list to the next, in the order of their places in the list.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Carried {
-    pub(super) places: Vec<u32>,
-    pub(super) histories: Vec<Packed>,
+/// A contact of the section's rows that has ended: the numbers of its spheres, and the energy that its tangential spring
+/// had left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ended {
+    pub(super) spheres: [u32; 2],
+    pub(super) energy: f64,
 }
 
 /// The pairs of a section, and which of them touch.
@@ -115,38 +116,25 @@ pub(super) struct Pairs {
     pub(super) near: Flat,
     /// Which pair of the list each of them is.
     pub(super) number: Vec<u32>,
-    /// Histories of the contacts.
-    pub(super) histories: Vec<Packed>,
-    /// For each pair the evaluation, counted round, at which it last touched.
-    stamp: Vec<u8>,
-    now: u8,
-    /// The pairs that touched at the last evaluation: only they have a history.
-    pub(super) touched: Vec<u32>,
     /// The near pairs that touch.
     pub(super) touching: Vec<u32>,
-    /// Place in the list of all, and energy of the tangential spring, of contacts of the section's rows that have ended in
-    /// this step.
-    pub(super) ended: Vec<(u32, f64)>,
+    /// What contacts remember.
+    pub(super) memory: Memory,
+    /// Since the last evaluation; it adds up their energies.
+    pub(super) ended: Vec<Ended>,
     /// Where there are several sections.
     pub(super) terms: RowTerms,
 }
 
 impl Pairs {
-    /// Takes up `rows` of a list and, in its order, the pairs at the border whose second sphere is in the section; without
-    /// histories.
+    /// Takes up `rows` of a list and, in its order, the pairs at the border whose second sphere is in the section.
     pub(super) fn load<H: Copy + Default + PartialEq>(
         &mut self,
         list: &Neighbours<H>,
         rows: impl Iterator<Item = usize>,
         borders: &[Border],
         spheres: &Spheres,
-        remembers: bool,
     ) {
-        // All others are fresh already.
-        for &k in &self.touched {
-            self.histories[k as usize] = Packed::default();
-        }
-        self.touched.clear();
         self.list.clear();
         self.at.clear();
         let mut borders = borders.iter().peekable();
@@ -160,11 +148,6 @@ impl Pairs {
         }
         borders.for_each(|border| self.take_border(border, spheres));
         self.list.fill_up();
-        self.stamp.clear();
-        if remembers {
-            self.histories.resize(self.at.len(), Packed::default());
-            self.stamp.resize(self.at.len(), self.now.wrapping_sub(1));
-        }
     }
 
     /// How many there are in the list.
@@ -180,85 +163,90 @@ impl Pairs {
 
     /// Takes the histories of its pairs up from those of the rows.
     pub(super) fn take_up<T: PackedHistory>(&mut self, histories: &[T::History<f64>]) {
-        let pairs = self.histories.iter_mut().zip(&self.at);
-        for (k, (packed, &at)) in (0..).zip(pairs) {
+        self.memory.clear();
+        for (k, &at) in (0..).zip(&self.at) {
             let history = &histories[at as usize];
             if *history != T::History::<f64>::default() {
-                *packed = T::pack(history);
-                self.touched.push(k);
+                self.memory.push(k, T::pack(history));
             }
         }
     }
 
-    /// The places in the list of all of the section's own contacts, and which pairs they are.
-    fn held(&self, own: Own) -> impl Iterator<Item = (u32, usize)> {
-        let touched = self.touched.iter().map(|&k| k as usize);
-        let owned = touched.filter(move |&k| own.holds(self.list.first[k] as usize));
-        owned.map(|k| (self.at[k], k))
+    /// Writes down the numbers of the spheres of the pairs that have a history.
+    pub(super) fn note(&mut self, number: &[u32]) {
+        let Self { list, memory, .. } = self;
+        memory.note(|k| [list.first[k], list.second[k]].map(|place| number[place as usize]));
     }
 
-    /// Takes its histories out, to be put into another list.
-    pub(super) fn hand_over(&mut self, own: Own, carried: &mut Carried) {
-        carried.places.clear();
-        carried.histories.clear();
-        for (at, k) in self.held(own) {
-            carried.places.push(at);
-            carried.histories.push(self.histories[k]);
-        }
-        for &k in &self.touched {
-            self.histories[k as usize] = Packed::default();
-        }
-        self.touched.clear();
-    }
-
-    /// Puts in those that are at `places` in the new list, in order, where its pairs are.
-    pub(super) fn carry_on<'a>(&mut self, places: &[u32], history: impl Fn(usize) -> &'a Packed) {
+    /// Finds these pairs in the section's part of a new list. A contact that is not in the list has ended, by a jump of its
+    /// spheres.
+    pub(super) fn find_again<T: PackedHistory>(
+        &mut self,
+        list: &Neighbours<T::History<f64>>,
+        law: &T,
+        place: &[u32],
+        own: Own,
+    ) {
+        let Self {
+            at, memory, ended, ..
+        } = self;
         let mut k = 0;
-        for (number, &place) in places.iter().enumerate() {
-            while self.at.get(k).is_some_and(|&at| at < place) {
+        memory.find_again(|spheres, history| {
+            let [first, second] = spheres;
+            let Some(listed) = list.place(first, second) else {
+                if own.holds(place[first as usize] as usize) {
+                    ended.push(Ended::of(law, spheres, history));
+                }
+                return None;
+            };
+            while (at[k] as usize) < listed {
                 k += 1;
             }
-            if self.at.get(k) == Some(&place) {
-                self.histories[k] = *history(number);
-                self.touched.push(k as u32);
-            }
-        }
+            Some(k as u32)
+        });
     }
 
     /// Writes the histories of its own contacts to those of the rows, which are fresh.
     pub(super) fn store<T: PackedHistory>(&self, own: Own, histories: &mut [T::History<f64>]) {
-        for (at, k) in self.held(own) {
-            histories[at as usize] = T::unpack(&self.histories[k]);
+        for (k, history) in self.memory.iter() {
+            if own.holds(self.list.first[k] as usize) {
+                histories[self.at[k] as usize] = T::unpack(history);
+            }
         }
     }
 
     /// Makes them fresh again.
     pub(super) fn freshen<H: Default>(&self, histories: &mut [H]) {
-        for &k in &self.touched {
-            histories[self.at[k as usize] as usize] = H::default();
+        for (k, _) in self.memory.iter() {
+            histories[self.at[k] as usize] = H::default();
         }
     }
 
-    /// Ends the histories of the pairs that touch no more.
-    pub(super) fn end_histories<T: PackedHistory>(&mut self, law: &T, own: Own) {
-        self.now = self.now.wrapping_add(1);
-        for at in &mut self.touching {
-            *at = self.number[*at as usize];
-            self.stamp[*at as usize] = self.now;
-        }
-        for &k in &self.touched {
-            let k = k as usize;
-            if self.stamp[k] != self.now {
-                let packed = &mut self.histories[k];
-                if own.holds(self.list.first[k] as usize) {
-                    let history = T::unpack(packed);
-                    self.ended
-                        .push((self.at[k], law.stored_energy::<f64>(&history)));
-                }
-                *packed = Packed::default();
+    /// Finds the histories of the pairs that touch, and ends those of the pairs that touch no more.
+    pub(super) fn begin_contacts<T: PackedHistory>(&mut self, law: &T, own: Own, numbers: &[u32]) {
+        let Self {
+            list,
+            number,
+            touching,
+            memory,
+            ended,
+            ..
+        } = self;
+        let touching = touching.iter().map(|&near| number[near as usize]);
+        memory.begin(touching, |k, history| {
+            let [first, second] = [list.first[k], list.second[k]];
+            if own.holds(first as usize) {
+                let spheres = [first, second].map(|place| numbers[place as usize]);
+                ended.push(Ended::of(law, spheres, history));
             }
-        }
-        core::mem::swap(&mut self.touched, &mut self.touching);
+        });
+    }
+}
+
+impl Ended {
+    fn of<T: PackedHistory>(law: &T, spheres: [u32; 2], history: &Packed) -> Self {
+        let energy = law.stored_energy::<f64>(&T::unpack(history));
+        Self { spheres, energy }
     }
 }
 

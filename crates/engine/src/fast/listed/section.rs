@@ -8,7 +8,7 @@ use core::ops::Range;
 use super::book::Gathered;
 use super::motion::Moved;
 use super::network::Rings;
-use super::pairs::{Border, Carried, Pairs};
+use super::pairs::{Border, Pairs};
 use super::spheres::{Forces, Own, Spheres};
 use crate::bodies::Bodies;
 use crate::fast::threads::Threads;
@@ -36,11 +36,10 @@ pub(super) struct Section {
     pub(super) drift: Drift,
 }
 
-/// What a section has for others.
+/// The pairs of a section's rows that other sections compute too.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Offer {
     pub(super) borders: Vec<Border>,
-    pub(super) carried: Carried,
 }
 
 /// A section of grains in a prescribed wall.
@@ -81,7 +80,6 @@ impl Section {
         list: &Neighbours<H>,
         spheres: &Spheres,
         offers: &[Offer],
-        remembers: bool,
     ) {
         let borders = offers.iter().flat_map(|offer| &offer.borders);
         let borders = borders.filter(|border| border.section == self.number);
@@ -95,10 +93,9 @@ impl Section {
             numbers.filter(|&row| row < list.rows())
         };
         let grains = rows(self.own.of_grains());
-        of_grains.load(list, grains, at_grains, spheres, remembers);
+        of_grains.load(list, grains, at_grains, spheres);
         let wall = rows(self.own.of_wall());
-        // Wall against wall has no friction.
-        of_wall.load(list, wall, at_wall, spheres, false);
+        of_wall.load(list, wall, at_wall, spheres);
     }
 }
 
