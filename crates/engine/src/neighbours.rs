@@ -113,6 +113,9 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         let Rows {
             partner, history, ..
         } = &mut self.rows;
+        // Room for later lists, too.
+        let room = partner.capacity().max(self.next.partner.capacity());
+        history.reserve(room.saturating_sub(history.len()));
         history.resize(partner.len(), H::default());
         history
     }
@@ -199,7 +202,10 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         H: Sync,
     {
         self.collect(position, turns, rule, threads);
-        core::mem::swap(&mut self.rows, &mut self.next);
+        let Self { rows, next, .. } = self;
+        core::mem::swap(rows, next);
+        // One array of fresh histories serves all these lists.
+        core::mem::swap(&mut rows.history, &mut next.history);
     }
 
     /// Makes the rows to come, without histories.

@@ -48,6 +48,17 @@ impl Memory {
         pairs.zip(&self.before)
     }
 
+    /// Makes room for so many contacts.
+    pub(super) fn reserve(&mut self, contacts: usize) {
+        let room = contacts + LANES;
+        for numbers in [&mut self.touched, &mut self.from, &mut self.touching] {
+            numbers.reserve(room.saturating_sub(numbers.len()));
+        }
+        for histories in [&mut self.before, &mut self.after] {
+            histories.reserve(room.saturating_sub(histories.len()));
+        }
+    }
+
     /// Writes down the spheres of the pairs.
     pub(super) fn note(&mut self, spheres: impl Fn(usize) -> [u32; 2]) {
         self.spheres.clear();
@@ -91,22 +102,23 @@ impl Memory {
             ..
         } = self;
         before.truncate(touched.len());
-        let mut remembered = touched.iter().zip(&*before).enumerate().peekable();
         let fresh = touched.len() as u32;
+        touched.push(u32::MAX);
         touching.clear();
         from.clear();
+        let mut old = 0;
         for pair in pairs {
-            while let Some((_, (&past, history))) =
-                remembered.next_if(|(_, (past, _))| **past < pair)
-            {
-                ended(past as usize, history);
+            while touched[old] < pair {
+                ended(touched[old] as usize, &before[old]);
+                old += 1;
             }
-            let own = remembered.next_if(|(_, (past, _))| **past == pair);
-            from.push(own.map_or(fresh, |(place, _)| place as u32));
+            let remembered = touched[old] == pair;
+            from.push(if remembered { old as u32 } else { fresh });
             touching.push(pair);
+            old += usize::from(remembered);
         }
-        for (_, (&past, history)) in remembered {
-            ended(past as usize, history);
+        for (&pair, history) in touched[old..].iter().zip(&before[old..]) {
+            ended(pair as usize, history);
         }
         before.push(Packed::default());
         from.resize(from.len().next_multiple_of(LANES), fresh);

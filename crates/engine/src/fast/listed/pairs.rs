@@ -264,7 +264,11 @@ impl Work for Prune<'_> {
     #[inline(always)]
     fn run<M: Machine>(self) {
         let Pairs {
-            list, near, number, ..
+            list,
+            near,
+            number,
+            memory,
+            ..
         } = self.pairs;
         list.find::<M>(self.position, self.length, self.skin, number);
         near.clear();
@@ -273,5 +277,6 @@ impl Work for Prune<'_> {
         near.second.extend(chosen.clone().map(|k| list.second[k]));
         near.reach.extend(chosen.map(|k| list.reach[k]));
         near.fill_up();
+        memory.reserve(near.first.capacity());
     }
 }
