@@ -133,50 +133,19 @@ impl RowTerms {
         }
     }
 
-    /// The contacts of the grain at a place.
+    /// The contacts of the grains at places that follow each other.
     #[inline(always)]
-    fn of_place(&self, place: usize) -> Range<usize> {
-        let row = place - self.own.start;
-        self.begin[row] as usize..self.begin[row + 1] as usize
+    fn of_places(&self, places: &Range<usize>) -> Range<usize> {
+        let begin = |place: usize| self.begin[place - self.own.start] as usize;
+        begin(places.start)..begin(places.end)
     }
 }
 
-/// Terms of some rows of the list of all, row after row.
+/// Rows of the list that follow each other there and, in one section, in their places too: so do the terms of their contacts.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Gathered {
-    pub(super) rows: Range<usize>,
-    losses: Vec<Record>,
-    rest: Vec<Record>,
-}
-
-impl Gathered {
-    /// Brings the terms together from all sections.
-    pub(super) fn gather(
-        &mut self,
-        pairs: &[[Pairs; 2]],
-        section_of: &[u16],
-        place: &[u32],
-        complete: bool,
-    ) {
-        let Self { rows, losses, rest } = self;
-        let (section_of, place) = (&section_of[rows.clone()], &place[rows.clone()]);
-        let contacts = section_of.iter().zip(place).map(|(&section, &place)| {
-            let [Pairs { terms, .. }, _] = &pairs[section as usize];
-            (terms, terms.of_place(place as usize))
-        });
-        losses.clear();
-        for (terms, contacts) in contacts.clone() {
-            for of_contact in &terms.losses[contacts] {
-                losses.push(*of_contact);
-            }
-        }
-        rest.clear();
-        if complete {
-            for (terms, contacts) in contacts {
-                rest.extend_from_slice(&terms.rest[contacts]);
-            }
-        }
-    }
+pub(super) struct Run {
+    pub(super) section: u16,
+    pub(super) places: Range<usize>,
 }
 
 /// Lanes whose sums a thread adds up: what it reads of their terms are whole lines of the cache.
@@ -206,8 +175,11 @@ impl InTurn {
 /// Adds up the terms that are for some of the lanes.
 pub(super) struct AddInTurn<'a> {
     pub(super) pairs: &'a [[Pairs; 2]],
-    pub(super) gathered: &'a [Gathered],
+    /// All rows, in the order of the list.
+    pub(super) runs: &'a [Run],
     pub(super) lanes: &'a mut InTurn,
+    /// Whether all sums are wanted.
+    pub(super) complete: bool,
 }
 
 impl Work for AddInTurn<'_> {
@@ -217,15 +189,25 @@ impl Work for AddInTurn<'_> {
     fn run<M: Machine>(self) {
         let Self {
             pairs,
-            gathered,
+            runs,
             lanes,
+            complete,
         } = self;
         let of_wall = pairs.iter().map(|[_, Pairs { terms, .. }]| terms);
         let of_wall = of_wall.map(|terms| &terms.losses[..terms.contacts]);
-        let of_grains = gathered.iter().map(|gathered| &gathered.losses[..]);
-        let rest = gathered.iter().map(|gathered| &gathered.rest[..]);
+        let of_runs = runs.iter().map(|run| {
+            let [Pairs { terms, .. }, _] = &pairs[run.section as usize];
+            (terms, terms.of_places(&run.places))
+        });
+        let of_grains = of_runs
+            .clone()
+            .map(|(terms, contacts)| &terms.losses[contacts]);
+        lanes.rest = Default::default();
+        if complete {
+            let rest = of_runs.map(|(terms, contacts)| &terms.rest[contacts]);
+            lanes.rest = add_in_turn::<M>(rest, lanes.first);
+        }
         lanes.losses = add_in_turn::<M>(of_grains, lanes.first);
-        lanes.rest = add_in_turn::<M>(rest, lanes.first);
         lanes.of_wall = add_in_turn::<M>(of_wall, lanes.first);
     }
 }

@@ -2,12 +2,12 @@
 
 use peristalsis_physics::contact::NormalLaw;
 
-use super::book::{AddInTurn, AddRings, Gathered, InTurn, add_contacts};
+use super::book::{AddInTurn, AddRings, InTurn, add_contacts};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
 use super::network::{WallForces, mean_force};
 use super::pairs::{Ended, Pairs};
-use super::section::{BesideWall, Shares};
+use super::section::{BesideWall, Section, Shares};
 use super::spheres::GrainsMut;
 use super::{Listed, Scratch};
 use crate::ledger::Tally;
@@ -78,8 +78,8 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         self.mean_wall_force = mean_force(elastic, core::iter::once(&section.rings), tally);
     }
 
-    /// The same by several threads: the contacts of each section, then the forces of its wall, and beside them the terms of
-    /// all contacts in the order of the list.
+    /// The same by several threads: for each section its contacts and then the forces of its wall, and when all are done the
+    /// terms of the contacts in the order of the list.
     pub(super) fn share_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
         let (law, length) = (self.reference.law, self.reference.length);
         let time_step = self.reference.parameters.time_step;
@@ -93,56 +93,43 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         } = &mut *self.scratch;
         let instructions = *instructions;
         let grains = spheres.grains;
-        let (number, place) = (&spheres.number[..], &spheres.place[..]);
+        let (number, places) = (&spheres.number[..], &spheres.place[grains..]);
         let spheres = spheres.moving();
         let elastic = wall.elastic();
         let Shares {
             sections,
             pairs,
-            gathered,
+            runs,
             section_of,
             ..
         } = shares;
-        let section_of = &section_of[..grains];
-        let sections = &mut sections[..];
-        threads.each(
-            pairs,
-            &mut *sections,
-            &|_| 1,
-            &|[of_grains, of_wall], sections| {
-                for section in sections {
-                    for (pairs, of_grains) in [(&mut *of_grains, true), (&mut *of_wall, false)] {
-                        instructions.run(PairForces {
-                            law,
-                            pairs,
-                            of_grains,
-                            spheres,
-                            number,
-                            forces: &mut section.forces,
-                            length,
-                            time_step,
-                            tally: None,
-                            complete,
-                        });
-                    }
+        let touch = |section: &mut Section, pairs: &mut [[Pairs; 2]]| {
+            for [of_grains, of_wall] in pairs {
+                for (pairs, of_grains) in [(of_grains, true), (of_wall, false)] {
+                    instructions.run(PairForces {
+                        law,
+                        pairs,
+                        of_grains,
+                        spheres,
+                        number,
+                        forces: &mut section.forces,
+                        length,
+                        time_step,
+                        tally: None,
+                        complete,
+                    });
                 }
-            },
-        );
-        let pairs = &pairs[..];
-        let gather = |gathered: &mut [Gathered]| {
-            for gathered in gathered {
-                gathered.gather(pairs, section_of, place, complete);
             }
         };
         if let Some(elastic) = elastic {
-            threads.each(sections, &mut gathered[..], &|_| 1, &|section, gathered| {
-                gather(gathered);
+            threads.each(sections, &mut pairs[..], &|_| 1, &|section, pairs| {
+                touch(section, pairs);
                 let [force, _] = section.forces.of_wall();
                 instructions.run(WallForces {
                     wall: elastic,
                     rings: &mut section.rings,
                     spheres,
-                    places: &place[grains..],
+                    places,
                     first: section.own.of_wall().start,
                     force,
                     tally: None,
@@ -150,37 +137,33 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                 });
             });
         } else {
-            let all = (&mut gathered[..], &mut self.beside_wall[..]);
-            threads.each(
-                sections,
-                all,
-                &|_| 1,
-                &|section, (gathered, beside_wall)| {
-                    gather(gathered);
-                    let mut grains = GrainsMut {
-                        moving: spheres,
-                        first: section.own.start,
-                        forces: section.forces.of_grains(),
-                    };
-                    for BesideWall { memory, sums } in beside_wall {
-                        wall.add_forces(law, &mut grains, memory, time_step, sums);
-                    }
-                },
-            );
+            let all = (&mut pairs[..], &mut self.beside_wall[..]);
+            threads.each(sections, all, &|_| 1, &|section, (pairs, beside_wall)| {
+                touch(section, pairs);
+                let mut grains = GrainsMut {
+                    moving: spheres,
+                    first: section.own.start,
+                    forces: section.forces.of_grains(),
+                };
+                for BesideWall { memory, sums } in beside_wall {
+                    wall.add_forces(law, &mut grains, memory, time_step, sums);
+                }
+            });
         }
-        let gathered = &gathered[..];
+        let (pairs, runs) = (&pairs[..], &runs[..]);
         let mut lanes = InTurn::all();
         threads.each(&mut lanes, (), &|_| 0, &|lanes, ()| {
             instructions.run(AddInTurn {
                 pairs,
-                gathered,
+                runs,
                 lanes,
+                complete,
             });
         });
         add_contacts(pairs, &lanes, tally);
         add_ended(&mut shares.pairs, ended, tally);
         let Some(elastic) = elastic else {
-            for &section in section_of {
+            for &section in &section_of[..grains] {
                 self.beside_wall[section as usize].sums.add_row(tally);
             }
             for BesideWall { sums, .. } in &mut self.beside_wall {

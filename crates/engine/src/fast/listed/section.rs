@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use super::book::Gathered;
+use super::book::Run;
 use super::motion::Moved;
 use super::network::Rings;
 use super::pairs::{Border, Pairs};
@@ -56,8 +56,8 @@ pub(super) struct Shares {
     /// The pairs of each whose first sphere is a grain, and those of wall spheres only.
     pub(super) pairs: Vec<[Pairs; 2]>,
     pub(super) offers: Vec<Offer>,
-    /// As many as there are sections.
-    pub(super) gathered: Vec<Gathered>,
+    /// All rows of grains, in the order of the list.
+    pub(super) runs: Vec<Run>,
     /// The section of each sphere, by its number.
     pub(super) section_of: Vec<u16>,
     /// Room: of each slice of the tube the work that its spheres make, then its section.
@@ -200,10 +200,6 @@ impl Shares {
         self.sections.resize_with(sections, Section::default);
         self.pairs.resize_with(sections, Default::default);
         self.offers.resize_with(sections, Offer::default);
-        self.gathered.resize_with(sections, Gathered::default);
-        for (number, gathered) in self.gathered.iter_mut().enumerate() {
-            gathered.rows = number * grains / sections..(number + 1) * grains / sections;
-        }
         for (number, section) in (0..).zip(&mut self.sections) {
             (section.number, section.own) = (number, Own::default());
         }
@@ -221,10 +217,24 @@ impl Shares {
         }
         numbers.clear();
         numbers.resize(all, 0);
-        for (sphere, &section) in (0..).zip(&self.section_of) {
+        self.runs.clear();
+        let (of_grains, of_wall) = self.section_of.split_at(grains);
+        let of_sections = of_grains.chunk_by(|a, b| a == b);
+        let all = of_sections.chain(of_wall.chunk_by(|a, b| a == b));
+        let mut sphere = 0;
+        for of_section in all {
+            let section = of_section[0];
             let place = &mut self.next[section as usize];
-            numbers[*place] = sphere;
-            *place += 1;
+            let places = *place..*place + of_section.len();
+            *place = places.end;
+            if (sphere as usize) < grains {
+                let places = places.clone();
+                self.runs.push(Run { section, places });
+            }
+            for number in &mut numbers[places] {
+                *number = sphere;
+                sphere += 1;
+            }
         }
     }
 }
