@@ -54,12 +54,8 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
     #[inline(always)]
     fn run<M: Machine>(mut self) {
         let own = self.forces.own;
-        self.pairs.terms.clear(own, 0, false);
-        if self.pairs.near.first.is_empty() && self.pairs.memory.is_empty() {
-            return;
-        }
-        let Pairs { near, touching, .. } = &mut *self.pairs;
-        near.find::<M>(self.spheres.position, self.length, 0.0, touching);
+        self.pairs
+            .find_contacts::<M>(self.spheres.position, self.length);
         let remembers = T::ROTATES && self.of_grains;
         if remembers {
             self.pairs
@@ -73,14 +69,17 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
             }
             None => {
                 let mut terms = core::mem::take(&mut self.pairs.terms);
-                terms.clear(own, self.pairs.touching.len(), self.complete);
+                // Of the wall's own contacts nobody asks for a row.
+                let grains = if self.of_grains { own.grains } else { 0 };
+                let rows = Own { grains, ..own };
+                terms.clear(rows, self.pairs.contacts, self.complete);
                 let complete = self.complete;
-                let mut rows = OfRows {
+                let mut of_rows = OfRows {
                     own,
                     terms: &mut terms,
                     complete,
                 };
-                self.work_out::<M>(&mut rows);
+                self.work_out::<M>(&mut of_rows);
                 terms.close();
                 self.pairs.terms = terms;
             }
@@ -124,15 +123,10 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
     let force = &mut forces.force[..];
     // Of one length: looked at once.
     let torque = &mut forces.torque[..force.len()];
-    let memory = &mut pairs.memory;
     let zero = Lanes::<M>::splat(0.0);
-    for (start, block) in (0..).step_by(LANES).zip(pairs.touching.chunks(LANES)) {
-        let contacts = block.len();
-        // Lanes to spare do the last contact again, to no effect.
-        let near = match block.first_chunk() {
-            Some(whole) => *whole,
-            None => core::array::from_fn(|lane| block[lane.min(contacts - 1)]),
-        };
+    for start in (0..pairs.contacts).step_by(LANES) {
+        let near = pairs.eight_touching(start);
+        let contacts = LANES.min(pairs.contacts - start);
         let first = eight_of(&pairs.near.first, &near).map(|&place| place);
         let second = eight_of(&pairs.near.second, &near).map(|&place| place);
         let nothing = Quad::<M>::splat(0.0);
@@ -158,9 +152,9 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
         if T::ROTATES {
             contact.rotation = turning_i * arms.0 + turning_j * arms.1;
         }
-        let mut history = T::recall::<M>(memory, start);
+        let mut history = T::recall::<M>(&pairs.memory, start);
         let answer = law.force(&contact, &mut history, time_step);
-        T::keep::<M>(&history, memory, start);
+        T::keep::<M>(&history, &mut pairs.memory, start);
         let on_first = record::from_lanes(answer.force, zero);
         let per_arm = record::from_lanes(answer.torque_per_arm, zero);
         let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());

@@ -21,7 +21,7 @@ pub(crate) struct Memory {
     /// With what history the evaluation leaves each contact; filled up likewise.
     after: Vec<Packed>,
     /// Room: the pairs that touch.
-    touching: Vec<u32>,
+    now: Vec<u32>,
     /// From one list to the next: the spheres of each pair.
     spheres: Vec<[u32; 2]>,
 }
@@ -30,10 +30,6 @@ impl Memory {
     pub(super) fn clear(&mut self) {
         self.touched.clear();
         self.before.clear();
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.touched.is_empty()
     }
 
     /// Remembers a pair behind all others.
@@ -51,7 +47,7 @@ impl Memory {
     /// Makes room for so many contacts.
     pub(super) fn reserve(&mut self, contacts: usize) {
         let room = contacts + LANES;
-        for numbers in [&mut self.touched, &mut self.from, &mut self.touching] {
+        for numbers in [&mut self.touched, &mut self.from, &mut self.now] {
             numbers.reserve(room.saturating_sub(numbers.len()));
         }
         for histories in [&mut self.before, &mut self.after] {
@@ -86,11 +82,13 @@ impl Memory {
         core::mem::swap(before, after);
     }
 
-    /// Before an evaluation: finds the history of each pair that touches, and tells of those that touch no more. Pairs come in
-    /// their order.
+    /// Before an evaluation: finds the history of each pair that touches, and tells of those that touch no more. Pairs are
+    /// those of `numbers` that `touching` chooses, in order.
+    #[inline(always)]
     pub(super) fn begin(
         &mut self,
-        pairs: impl Iterator<Item = u32>,
+        touching: &[u32],
+        numbers: &[u32],
         mut ended: impl FnMut(usize, &Packed),
     ) {
         let Self {
@@ -98,24 +96,43 @@ impl Memory {
             before,
             from,
             after,
-            touching,
+            now,
             ..
         } = self;
         before.truncate(touched.len());
         let fresh = touched.len() as u32;
         touched.push(u32::MAX);
-        touching.clear();
+        now.clear();
         from.clear();
         let mut old = 0;
-        for pair in pairs {
-            while touched[old] < pair {
-                ended(touched[old] as usize, &before[old]);
-                old += 1;
+        let mut find = |pair: u32, old: &mut usize| {
+            while touched[*old] < pair {
+                ended(touched[*old] as usize, &before[*old]);
+                *old += 1;
             }
-            let remembered = touched[old] == pair;
-            from.push(if remembered { old as u32 } else { fresh });
-            touching.push(pair);
-            old += usize::from(remembered);
+            let remembered = touched[*old] == pair;
+            let own = if remembered { *old as u32 } else { fresh };
+            *old += usize::from(remembered);
+            own
+        };
+        let (eights, rest) = touching.as_chunks::<LANES>();
+        for eight in eights {
+            let pairs = eight_of(numbers, eight).map(|&pair| pair);
+            now.extend(pairs);
+            // Mostly the same eight touched before.
+            from.extend(match touched[old..].first_chunk() == Some(&pairs) {
+                true => {
+                    let first = old as u32;
+                    old += LANES;
+                    core::array::from_fn(|lane| first + lane as u32)
+                }
+                false => pairs.map(|pair| find(pair, &mut old)),
+            });
+        }
+        for &at in rest {
+            let pair = numbers[at as usize];
+            now.push(pair);
+            from.push(find(pair, &mut old));
         }
         for (&pair, history) in touched[old..].iter().zip(&before[old..]) {
             ended(pair as usize, history);
@@ -123,7 +140,7 @@ impl Memory {
         before.push(Packed::default());
         from.resize(from.len().next_multiple_of(LANES), fresh);
         after.resize(from.len(), Packed::default());
-        core::mem::swap(touched, touching);
+        core::mem::swap(touched, now);
     }
 
     /// After an evaluation.

@@ -48,7 +48,7 @@ impl Flat {
         self.reach.resize(whole, 0.0);
     }
 
-    /// Writes down, in order, the pairs that are closer than their reach and `skin`.
+    /// Writes down, in order, the pairs that are closer than their reach and `skin`; answers how many there are.
     #[inline(always)]
     pub(super) fn find<M: Machine>(
         &self,
@@ -56,8 +56,11 @@ impl Flat {
         length: f64,
         skin: f64,
         found: &mut Vec<u32>,
-    ) {
-        found.resize(self.first.len() + LANES, 0);
+    ) -> usize {
+        let room = self.first.len() + LANES;
+        if found.len() < room {
+            found.resize(room, 0);
+        }
         let mut end = 0;
         let (skin, whole) = (Lanes::splat(skin), Lanes::splat(length));
         let blocks = self.first.as_chunks::<LANES>().0.iter();
@@ -82,7 +85,7 @@ impl Flat {
             near.write_down((block * LANES) as u32, window);
             end += near.count() as usize;
         }
-        found.truncate(end);
+        end
     }
 }
 
@@ -116,8 +119,9 @@ pub(super) struct Pairs {
     pub(super) near: Flat,
     /// Which pair of the list each of them is.
     pub(super) number: Vec<u32>,
-    /// The near pairs that touch.
-    pub(super) touching: Vec<u32>,
+    /// The near pairs that touch, so many.
+    touching: Vec<u32>,
+    pub(super) contacts: usize,
     /// What contacts remember.
     pub(super) memory: Memory,
     /// Since the last evaluation; it adds up their energies.
@@ -222,18 +226,37 @@ impl Pairs {
         }
     }
 
+    /// Finds the near pairs that touch.
+    #[inline(always)]
+    pub(super) fn find_contacts<M: Machine>(&mut self, position: &[Record], length: f64) {
+        self.contacts = self
+            .near
+            .find::<M>(position, length, 0.0, &mut self.touching);
+    }
+
+    /// The near pairs of the contacts from `start` on; of the last eight, those to spare are the last once more.
+    #[inline(always)]
+    pub(super) fn eight_touching(&self, start: usize) -> [u32; LANES] {
+        let touching = &self.touching[start..self.contacts];
+        match touching.first_chunk() {
+            Some(eight) => *eight,
+            None => core::array::from_fn(|lane| touching[lane.min(touching.len() - 1)]),
+        }
+    }
+
     /// Finds the histories of the pairs that touch, and ends those of the pairs that touch no more.
+    #[inline(always)]
     pub(super) fn begin_contacts<T: PackedHistory>(&mut self, law: &T, own: Own, numbers: &[u32]) {
         let Self {
             list,
             number,
             touching,
+            contacts,
             memory,
             ended,
             ..
         } = self;
-        let touching = touching.iter().map(|&near| number[near as usize]);
-        memory.begin(touching, |k, history| {
+        memory.begin(&touching[..*contacts], number, |k, history| {
             let [first, second] = [list.first[k], list.second[k]];
             if own.holds(first as usize) {
                 let spheres = [first, second].map(|place| numbers[place as usize]);
@@ -270,9 +293,9 @@ impl Work for Prune<'_> {
             memory,
             ..
         } = self.pairs;
-        list.find::<M>(self.position, self.length, self.skin, number);
+        let chosen = list.find::<M>(self.position, self.length, self.skin, number);
         near.clear();
-        let chosen = number.iter().map(|&k| k as usize);
+        let chosen = number[..chosen].iter().map(|&k| k as usize);
         near.first.extend(chosen.clone().map(|k| list.first[k]));
         near.second.extend(chosen.clone().map(|k| list.second[k]));
         near.reach.extend(chosen.map(|k| list.reach[k]));
