@@ -88,8 +88,8 @@ fn to_arrays<M: Machine>([one, two]: [Lanes<M>; 2]) -> [[f64; LANES]; 2] {
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowTerms {
     own: Own,
-    /// Where the contacts of each grain begin; behind them, where those of all other rows would.
-    begin: Vec<u32>,
+    /// Behind which contact those of each grain end, and in the last place those of all other rows.
+    ends: Vec<u32>,
     /// Of each contact normal dissipation, tangential loss, sliding loss, energy; and room for eight more.
     pub(super) losses: Vec<Record>,
     /// Of each contact overlap and axial force of the wall, where all sums are wanted; and room for eight more.
@@ -104,8 +104,8 @@ impl RowTerms {
     /// Forgets all, and makes room for so many contacts in the rows of a section.
     pub(super) fn clear(&mut self, own: Own, contacts: usize, complete: bool) {
         self.own = own;
-        self.begin.clear();
-        self.begin.resize(own.grains + 2, 0);
+        self.ends.clear();
+        self.ends.resize(own.grains + 1, 0);
         let room = contacts + LANES;
         if self.losses.len() < room {
             self.losses.resize(room, Record::ZERO);
@@ -118,26 +118,32 @@ impl RowTerms {
         self.largest_overlap = 0.0;
     }
 
-    /// One contact more in a row.
+    /// Counts the contacts of eight that are own, in these rows.
     #[inline(always)]
-    pub(super) fn count(&mut self, row: usize) {
-        self.begin[row.min(self.own.grains) + 1] += 1;
+    pub(super) fn count(&mut self, owned: u8, rows: &[usize; LANES]) {
+        for (lane, row) in rows.iter().enumerate() {
+            self.contacts += usize::from(owned >> lane & 1);
+            self.ends[(*row).min(self.own.grains)] = self.contacts as u32;
+        }
     }
 
     /// After the last contact.
     pub(super) fn close(&mut self) {
-        let mut all = 0;
-        for begin in &mut self.begin {
-            all += *begin;
-            *begin = all;
+        let mut end = 0;
+        for of_row in &mut self.ends {
+            end = end.max(*of_row);
+            *of_row = end;
         }
     }
 
     /// The contacts of the grains at places that follow each other.
     #[inline(always)]
     fn of_places(&self, places: &Range<usize>) -> Range<usize> {
-        let begin = |place: usize| self.begin[place - self.own.start] as usize;
-        begin(places.start)..begin(places.end)
+        let before = |place: usize| match place - self.own.start {
+            0 => 0,
+            row => self.ends[row - 1] as usize,
+        };
+        before(places.start)..before(places.end)
     }
 }
 

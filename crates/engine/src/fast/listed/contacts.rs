@@ -6,7 +6,7 @@ use peristalsis_physics::real::Real;
 use super::book::RowTerms;
 use super::history::PackedHistory;
 use super::pairs::Pairs;
-use super::record;
+use super::record::{self, Record};
 use super::spheres::{Forces, Moving, Own};
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work, eight_of};
@@ -233,25 +233,19 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
             answer.tangential.slid,
         );
         let losses = record::from_lanes(lost, answer.energy);
-        let mut rest = losses;
+        // Of a contact in a row of another section nothing is kept.
+        let valid = Mask::<M>::first(eight.contacts).to_bits();
+        let is_own = |lane: usize| eight.rows[lane] < own.number;
+        let owned = (0..LANES).fold(0, |owned, lane| owned | u8::from(is_own(lane)) << lane);
+        let owned = owned & valid;
+        keep::<M>(&mut terms.losses[terms.contacts..], owned, losses);
         if *complete {
             let axial_force = Lanes::select(eight.with_wall, answer.force.z, zero);
             let vector = LaneVector::new(eight.overlap, axial_force, zero);
-            rest = record::from_lanes(vector, zero);
+            let rest = record::from_lanes(vector, zero);
+            keep::<M>(&mut terms.rest[terms.contacts..], owned, rest);
         }
-        let mut owned = 0;
-        for lane in 0..eight.contacts {
-            let row = eight.rows[lane];
-            terms.losses[terms.contacts] = losses[lane].record();
-            if *complete {
-                terms.rest[terms.contacts] = rest[lane].record();
-            }
-            // Of a contact in a row of another section nothing is kept.
-            terms.count(row);
-            let is_own = row < own.number;
-            terms.contacts += usize::from(is_own);
-            owned |= u8::from(is_own) << lane;
-        }
+        terms.count(owned, &eight.rows);
         let owned = Mask::from_bits(owned);
         let overlap = Lanes::select(owned, eight.overlap, zero);
         terms.largest_overlap = terms.largest_overlap.max(overlap.max_lane());
@@ -260,5 +254,17 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
         *of_grains += owned.count() - with_wall;
         *of_wall += with_wall;
         *sliding += (owned & answer.tangential.sliding).count();
+    }
+}
+
+/// Writes down, one after the other, the terms of the lanes that are own.
+#[inline(always)]
+fn keep<M: Machine>(to: &mut [Record], owned: u8, terms: [Quad<M>; LANES]) {
+    let to = to.first_chunk_mut::<LANES>().expect("room for eight more");
+    let mut end = 0;
+    for lane in 0..LANES {
+        // Those that are not own are written over.
+        to[end] = terms[lane].record();
+        end += usize::from(owned >> lane & 1);
     }
 }
