@@ -262,9 +262,9 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
 fn keep<M: Machine>(to: &mut [Record], owned: u8, terms: [Quad<M>; LANES]) {
     let to = to.first_chunk_mut::<LANES>().expect("room for eight more");
     let mut end = 0;
-    for lane in 0..LANES {
+    for (lane, terms) in terms.iter().enumerate() {
         // Those that are not own are written over.
-        to[end] = terms[lane].record();
+        to[end] = terms.record();
         end += usize::from(owned >> lane & 1);
     }
 }
