@@ -32,12 +32,9 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
 
     /// All histories but fresh ones: of pairs, in their order, and of contacts with a prescribed wall.
     pub(crate) fn remembered(&self) -> Remembered<H> {
-        let pairs = self.pairs.iter().filter(|it| *it.2 != H::default());
-        let owned = |(i, j, history): (u32, u32, &H)| (i, j, *history);
-        [
-            pairs.map(owned).collect(),
-            self.wall.iter().map(owned).collect(),
-        ]
+        let of_wall = self.wall.iter();
+        let of_wall = of_wall.map(|(i, j, history)| (i, j, *history));
+        [self.pairs.remembered().collect(), of_wall.collect()]
     }
 
     /// Takes histories up; the neighbour list holds their pairs.
@@ -70,12 +67,12 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
 
     /// Makes the neighbour list anew.
     pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64, threads: &Threads) {
-        let rule = rule(bodies, wall, skin + self.range);
-        self.pairs
-            .rebuild(&bodies.position, &bodies.turns, &rule, threads);
+        self.pairs.carry_out();
+        self.rebuild_fresh(bodies, wall, skin, threads);
+        self.pairs.carry_on();
     }
 
-    /// The same while others keep the histories, as [`Neighbours::rebuild_fresh`].
+    /// The same while others keep the histories, and all here are fresh.
     pub(crate) fn rebuild_fresh(
         &mut self,
         bodies: &Bodies,
@@ -83,26 +80,17 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
         skin: f64,
         threads: &Threads,
     ) {
-        let rule = rule(bodies, wall, skin + self.range);
+        let grains = bodies.grains;
+        let rule = PairRule {
+            diameter: &bodies.diameter,
+            length: wall.length(),
+            skin: skin + self.range,
+            half_width: wall.usual_radius(),
+            admits_all_below: grains,
+            admits: |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
+        };
         self.pairs
-            .rebuild_fresh(&bodies.position, &bodies.turns, &rule, threads);
-    }
-}
-
-/// Which pairs are listed.
-fn rule<'a>(
-    bodies: &'a Bodies,
-    wall: &'a Wall,
-    skin: f64,
-) -> PairRule<'a, impl Fn(usize, usize) -> bool + Sync> {
-    let grains = bodies.grains;
-    PairRule {
-        diameter: &bodies.diameter,
-        length: wall.length(),
-        skin,
-        half_width: wall.usual_radius(),
-        admits_all_below: grains,
-        admits: move |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
+            .rebuild(&bodies.position, &bodies.turns, &rule, threads);
     }
 }
 

@@ -20,12 +20,14 @@ use crate::fast::threads::Threads;
 /// Pairs of [`Late`] spheres are seldom near, so the search for them goes farther than the skin \[d\] and serves several lists.
 const FARTHER: f64 = 1.0;
 
-/// Rows of partners with a value of type `H` beside each pair.
+/// Rows of partners with a history of type `H` beside each pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<H> {
-    rows: Rows<H>,
-    /// Room for the list to come; no history but fresh ones.
-    next: Rows<H>,
+    rows: Rows,
+    /// Room for the list to come.
+    next: Rows,
+    /// Of each pair; while others keep the histories all are fresh, and not yet as many as there are pairs.
+    history: Vec<H>,
     /// Unfolded positions when the list was made.
     origin: Vec<DVec3>,
     /// Skin with which it was made.
@@ -35,8 +37,8 @@ pub(crate) struct Neighbours<H> {
     late_cells: Cells,
     pieces: Vec<Piece>,
     collecting: Collecting,
-    /// Room: pairs that remember a contact, as (i, j, place in the list before).
-    remembered: Vec<[u32; 3]>,
+    /// Histories (i, j, history) on their way from one list to the next.
+    carried: Vec<(u32, u32, H)>,
 }
 
 /// The last spheres, of whose pairs with each other not all are admitted (those of an elastic wall), as they were when these
@@ -61,6 +63,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
                 ..Rows::default()
             },
             next: Rows::default(),
+            history: Vec::new(),
             origin: Vec::new(),
             skin: 0.0,
             late: Late::default(),
@@ -68,7 +71,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             late_cells: Cells::default(),
             pieces: Vec::new(),
             collecting: Collecting::default(),
-            remembered: Vec::new(),
+            carried: Vec::new(),
         }
     }
 
@@ -82,10 +85,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     #[inline(always)]
     pub(crate) fn row(&mut self, i: usize) -> (&[u32], &mut [H]) {
         let range = self.rows.range(i);
-        (
-            &self.rows.partner[range.clone()],
-            &mut self.rows.history[range],
-        )
+        (&self.rows.partner[range.clone()], &mut self.history[range])
     }
 
     /// The places of the pairs of row i in the list.
@@ -105,19 +105,18 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
 
     /// The histories of all pairs, row after row.
     pub(crate) fn histories(&self) -> &[H] {
-        &self.rows.history
+        &self.history
     }
 
     /// The same, to be changed.
     pub(crate) fn histories_mut(&mut self) -> &mut [H] {
-        let Rows {
-            partner, history, ..
-        } = &mut self.rows;
+        let (partner, next) = (&self.rows.partner, &self.next.partner);
         // Room for later lists, too.
-        let room = partner.capacity().max(self.next.partner.capacity());
-        history.reserve(room.saturating_sub(history.len()));
-        history.resize(partner.len(), H::default());
-        history
+        let room = partner.capacity().max(next.capacity());
+        let more = room.saturating_sub(self.history.len());
+        self.history.reserve(more);
+        self.history.resize(partner.len(), H::default());
+        &mut self.history
     }
 
     /// All pairs with their histories, in order.
@@ -126,7 +125,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             let row = self
                 .partners(i)
                 .iter()
-                .zip(&self.rows.history[self.rows.range(i)]);
+                .zip(&self.history[self.rows.range(i)]);
             row.map(move |(&j, history)| (i as u32, j, history))
         })
     }
@@ -140,7 +139,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     pub(crate) fn set_history(&mut self, i: u32, j: u32, history: H) -> bool {
         let place = self.place(i, j);
         if let Some(place) = place {
-            self.rows.history[place] = history;
+            self.history[place] = history;
         }
         place.is_some()
     }
@@ -174,42 +173,42 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         Drift::of(here_and_there)
     }
 
-    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, perhaps some farther ones, and those that
-    /// still remember a contact, in a time that grows linearly with the number of spheres. Histories move with their pairs.
+    /// All histories but fresh ones, with their pairs, in order.
+    pub(crate) fn remembered(&self) -> impl Iterator<Item = (u32, u32, H)> {
+        let all = self.iter().map(|(i, j, history)| (i, j, *history));
+        all.filter(|(.., history)| *history != H::default())
+    }
+
+    /// Takes all histories out, which [`Neighbours::carry_on`] puts into the next list; leaves fresh ones.
+    pub(crate) fn carry_out(&mut self) {
+        let mut carried = core::mem::take(&mut self.carried);
+        carried.clear();
+        carried.extend(self.remembered());
+        self.carried = carried;
+        self.history.fill(H::default());
+    }
+
+    /// Puts back the histories that were taken out of the list before.
+    pub(crate) fn carry_on(&mut self) {
+        let carried = core::mem::take(&mut self.carried);
+        // Contacts that ended in this very step are listed once more, however far their spheres have jumped: what they
+        // remember must be accounted for.
+        let pairs = carried.iter().map(|&(i, j, _)| (i, j));
+        let far: Vec<_> = pairs.filter(|&(i, j)| self.place(i, j).is_none()).collect();
+        if !far.is_empty() {
+            self.rows.insert(&far);
+        }
+        self.histories_mut();
+        for &(i, j, history) in &carried {
+            self.set_history(i, j, history);
+        }
+        self.carried = carried;
+    }
+
+    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, and perhaps some farther ones, in a time
+    /// that grows linearly with the number of spheres. All histories must be fresh, and none is looked at before
+    /// [`Neighbours::carry_on`] or [`Neighbours::histories_mut`].
     pub(crate) fn rebuild<F: Fn(usize, usize) -> bool + Sync>(
-        &mut self,
-        position: &[DVec3],
-        turns: &[i32],
-        rule: &PairRule<'_, F>,
-        threads: &Threads,
-    ) where
-        H: Sync,
-    {
-        self.collect(position, turns, rule, threads);
-        self.move_histories();
-        core::mem::swap(&mut self.rows, &mut self.next);
-    }
-
-    /// The same while others keep the histories: all here are fresh, and none is looked at before
-    /// [`Neighbours::histories_mut`].
-    pub(crate) fn rebuild_fresh<F: Fn(usize, usize) -> bool + Sync>(
-        &mut self,
-        position: &[DVec3],
-        turns: &[i32],
-        rule: &PairRule<'_, F>,
-        threads: &Threads,
-    ) where
-        H: Sync,
-    {
-        self.collect(position, turns, rule, threads);
-        let Self { rows, next, .. } = self;
-        core::mem::swap(rows, next);
-        // One array of fresh histories serves all these lists.
-        core::mem::swap(&mut rows.history, &mut next.history);
-    }
-
-    /// Makes the rows to come, without histories.
-    fn collect<F: Fn(usize, usize) -> bool + Sync>(
         &mut self,
         position: &[DVec3],
         turns: &[i32],
@@ -237,46 +236,14 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             rule.length,
             threads,
         );
-        let Self { next, .. } = self;
         let found = [&self.pieces[..], &self.late.found];
-        next.collect(position.len(), found, &mut self.collecting, threads);
+        self.next
+            .collect(position.len(), found, &mut self.collecting, threads);
         self.skin = rule.skin;
         self.origin.clear();
         self.origin.extend(unfolded);
-        debug_assert_eq!(next.start.len(), position.len() + 1);
-    }
-
-    /// Moves the histories that are no fresh ones to the rows to come; the rows of now keep fresh ones alone.
-    fn move_histories(&mut self) {
-        let Self {
-            rows,
-            next,
-            remembered,
-            ..
-        } = self;
-        remembered.clear();
-        for row in 0..rows.start.len() - 1 {
-            for at in rows.range(row) {
-                if rows.history[at] != H::default() {
-                    remembered.push([row as u32, rows.partner[at], at as u32]);
-                }
-            }
-        }
-        let place = |next: &Rows<H>, i: u32, j: u32| next.place(i as usize, j);
-        // Contacts that ended in this very step are listed once more, however far their spheres have jumped: what they
-        // remember must be accounted for.
-        let is_far = |&&[i, j, _]: &&[u32; 3]| place(next, i, j).is_none();
-        let far = remembered.iter().filter(is_far);
-        let far: Vec<_> = far.map(|&[i, j, _]| (i, j)).collect();
-        if !far.is_empty() {
-            next.insert(&far);
-        }
-        next.history.resize(next.partner.len(), H::default());
-        for &[i, j, at] in &*remembered {
-            if let Some(to) = place(next, i, j) {
-                next.history[to] = core::mem::take(&mut rows.history[at as usize]);
-            }
-        }
+        core::mem::swap(&mut self.rows, &mut self.next);
+        debug_assert_eq!(self.rows(), position.len());
     }
 
     /// Searches for the pairs of late spheres, unless what was found before holds all that are wanted.

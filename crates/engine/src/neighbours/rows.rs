@@ -7,13 +7,12 @@ use crate::fast::lanes::LANES;
 use crate::fast::machine::{Instructions, Machine, Work};
 use crate::fast::threads::Threads;
 
-/// Rows of partners, and a value beside each.
+/// Rows of partners.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Rows<H> {
-    /// Row i is `start[i]..start[i + 1]` of the others.
+pub(super) struct Rows {
+    /// Row i is `start[i]..start[i + 1]` of the partners.
     pub(super) start: Vec<u32>,
     pub(super) partner: Vec<u32>,
-    pub(super) history: Vec<H>,
 }
 
 /// Partners of some spheres, in no order.
@@ -50,7 +49,7 @@ impl Found {
     }
 }
 
-impl<H> Rows<H> {
+impl Rows {
     #[inline(always)]
     pub(super) fn range(&self, row: usize) -> Range<usize> {
         self.start[row] as usize..self.start[row + 1] as usize
@@ -63,7 +62,7 @@ impl<H> Rows<H> {
         Some(range.start + place)
     }
 
-    /// Takes the rows of so many spheres, without values, from what was found.
+    /// Takes the rows of so many spheres from what was found.
     pub(super) fn collect(
         &mut self,
         spheres: usize,
@@ -71,7 +70,7 @@ impl<H> Rows<H> {
         room: &mut Collecting,
         threads: &Threads,
     ) {
-        let Self { start, partner, .. } = self;
+        let Self { start, partner } = self;
         let Collecting { whence, stretches } = room;
         start.clear();
         start.resize(spheres + 1, 0);
@@ -117,7 +116,7 @@ impl<H> Rows<H> {
         );
     }
 
-    /// Puts more pairs (i, j) into the rows, which have no values; their order is that of the rows.
+    /// Puts more pairs (i, j) into the rows; their order is that of the rows.
     pub(super) fn insert(&mut self, more: &[(u32, u32)]) {
         let (mut start, mut partner) = (vec![0], Vec::new());
         let mut more = more.iter().peekable();

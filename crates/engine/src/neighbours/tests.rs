@@ -49,7 +49,9 @@ impl Spheres {
         // The list is the same for any number of threads.
         let number = self.position.len();
         let threads = Threads::new(1 + number % 3).unwrap();
+        list.carry_out();
         list.rebuild(&self.position, &vec![0; number], &rule, &threads);
+        list.carry_on();
     }
 }
 

@@ -238,12 +238,12 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
         let is_own = |lane: usize| eight.rows[lane] < own.number;
         let owned = (0..LANES).fold(0, |owned, lane| owned | u8::from(is_own(lane)) << lane);
         let owned = owned & valid;
-        keep::<M>(&mut terms.losses[terms.contacts..], owned, losses);
+        write_owned::<M>(&mut terms.losses[terms.contacts..], owned, losses);
         if *complete {
             let axial_force = Lanes::select(eight.with_wall, answer.force.z, zero);
             let vector = LaneVector::new(eight.overlap, axial_force, zero);
             let rest = record::from_lanes(vector, zero);
-            keep::<M>(&mut terms.rest[terms.contacts..], owned, rest);
+            write_owned::<M>(&mut terms.rest[terms.contacts..], owned, rest);
         }
         terms.count(owned, &eight.rows);
         let owned = Mask::from_bits(owned);
@@ -259,7 +259,7 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
 
 /// Writes down, one after the other, the terms of the lanes that are own.
 #[inline(always)]
-fn keep<M: Machine>(to: &mut [Record], owned: u8, terms: [Quad<M>; LANES]) {
+fn write_owned<M: Machine>(to: &mut [Record], owned: u8, terms: [Quad<M>; LANES]) {
     let to = to.first_chunk_mut::<LANES>().expect("room for eight more");
     let mut end = 0;
     for (lane, terms) in terms.iter().enumerate() {

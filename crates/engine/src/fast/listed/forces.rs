@@ -1,6 +1,6 @@
 //! All forces on the spheres: of the only section as they are found, of several shared out to threads.
 
-use peristalsis_physics::contact::NormalLaw;
+use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
 use super::book::{AddInTurn, AddRings, InTurn, add_contacts};
 use super::contacts::PairForces;
@@ -8,16 +8,97 @@ use super::history::PackedHistory;
 use super::network::{WallForces, mean_force};
 use super::pairs::{Ended, Pairs};
 use super::section::{BesideWall, Section, Shares};
-use super::spheres::GrainsMut;
+use super::spheres::{GrainsMut, Moving, Spheres};
 use super::{Listed, Scratch};
+use crate::fast::machine::Instructions;
+use crate::forces::Reference;
 use crate::ledger::Tally;
-use crate::wall::Wall;
+use crate::wall::{ElasticWall, Wall};
+
+/// An evaluation of the forces, section by section.
+struct Evaluation<'a, N, T: PackedHistory> {
+    law: &'a ContactLaw<N, T>,
+    instructions: Instructions,
+    spheres: Moving<'a>,
+    /// The number of the sphere at each place, and the places of the spheres of the wall.
+    number: &'a [u32],
+    places: &'a [u32],
+    length: f64,
+    time_step: f64,
+    /// Whether all sums are wanted.
+    complete: bool,
+}
+
+impl<'a, N: NormalLaw, T: PackedHistory> Evaluation<'a, N, T> {
+    fn new(
+        reference: &Reference<'a, N, T>,
+        spheres: &'a Spheres,
+        instructions: Instructions,
+        complete: bool,
+    ) -> Self {
+        Self {
+            law: reference.law,
+            instructions,
+            spheres: spheres.moving(),
+            number: &spheres.number,
+            places: &spheres.place[spheres.grains..],
+            length: reference.length,
+            time_step: reference.parameters.time_step,
+            complete,
+        }
+    }
+
+    /// Contacts of a section's grains, and of its wall with itself. Their sums go to the tallies, or become terms.
+    fn touch(
+        &self,
+        section: &mut Section,
+        [of_grains, of_wall]: &mut [Pairs; 2],
+        [tally, of_wall_tally]: [Option<&mut Tally>; 2],
+    ) {
+        for (pairs, of_grains, tally) in [(of_grains, true, tally), (of_wall, false, of_wall_tally)]
+        {
+            self.instructions.run(PairForces {
+                law: self.law,
+                pairs,
+                of_grains,
+                spheres: self.spheres,
+                number: self.number,
+                forces: &mut section.forces,
+                length: self.length,
+                time_step: self.time_step,
+                tally,
+                complete: self.complete,
+            });
+        }
+    }
+
+    /// Forces of a section's elastic wall; sums likewise.
+    fn push(&self, wall: &ElasticWall, section: &mut Section, tally: Option<&mut Tally>) {
+        let [force, _] = section.forces.of_wall();
+        self.instructions.run(WallForces {
+            wall,
+            rings: &mut section.rings,
+            spheres: self.spheres,
+            places: self.places,
+            first: section.own.of_wall().start,
+            force,
+            tally,
+            complete: self.complete,
+        });
+    }
+
+    fn grains<'b>(&'b self, section: &'b mut Section) -> GrainsMut<'b> {
+        GrainsMut {
+            moving: self.spheres,
+            first: section.own.start,
+            forces: section.forces.of_grains(),
+        }
+    }
+}
 
 impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
     /// Adds all forces, one after the other.
     pub(super) fn add_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
-        let (law, length) = (self.reference.law, self.reference.length);
-        let time_step = self.reference.parameters.time_step;
         let Scratch {
             instructions,
             spheres,
@@ -25,64 +106,32 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             ended,
             ..
         } = &mut *self.scratch;
-        let (Some(section), Some([of_grains, of_wall])) =
-            (shares.sections.first_mut(), shares.pairs.first_mut())
+        let evaluation = Evaluation::new(&self.reference, spheres, *instructions, complete);
+        let (Some(section), Some(pairs)) = (shares.sections.first_mut(), shares.pairs.first_mut())
         else {
             return;
         };
-        let (number, places) = (&spheres.number[..], &spheres.place[spheres.grains..]);
-        let spheres = spheres.moving();
         let mut sums_of_wall = Tally::default();
-        for (pairs, of_grains, tally) in [
-            (&mut *of_grains, true, &mut *tally),
-            (of_wall, false, &mut sums_of_wall),
-        ] {
-            instructions.run(PairForces {
-                law,
-                pairs,
-                of_grains,
-                spheres,
-                number,
-                forces: &mut section.forces,
-                length,
-                time_step,
-                tally: Some(tally),
-                complete,
-            });
-        }
+        let tallies = [Some(&mut *tally), Some(&mut sums_of_wall)];
+        evaluation.touch(section, pairs, tallies);
         add_ended(&mut shares.pairs, ended, tally);
         // Contacts of wall spheres with each other are no contacts of grains.
         tally.contact_energy += sums_of_wall.contact_energy;
         tally.normal_dissipation += sums_of_wall.normal_dissipation;
         let Some(elastic) = wall.elastic() else {
-            let mut grains = GrainsMut {
-                moving: spheres,
-                first: 0,
-                forces: section.forces.of_grains(),
-            };
+            let (law, time_step) = (evaluation.law, evaluation.time_step);
+            let mut grains = evaluation.grains(section);
             let memory = &mut self.reference.contacts.wall;
             wall.add_forces(law, &mut grains, memory, time_step, tally);
             return;
         };
-        let [force, _] = section.forces.of_wall();
-        instructions.run(WallForces {
-            wall: elastic,
-            rings: &mut section.rings,
-            spheres,
-            places,
-            first: section.own.of_wall().start,
-            force,
-            tally: Some(tally),
-            complete,
-        });
+        evaluation.push(elastic, section, Some(tally));
         self.mean_wall_force = mean_force(elastic, core::iter::once(&section.rings), tally);
     }
 
     /// The same by several threads: for each section its contacts and then the forces of its wall, and when all are done the
     /// terms of the contacts in the order of the list.
     pub(super) fn share_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
-        let (law, length) = (self.reference.law, self.reference.length);
-        let time_step = self.reference.parameters.time_step;
         let Scratch {
             instructions,
             threads,
@@ -91,10 +140,8 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             ended,
             ..
         } = &mut *self.scratch;
-        let instructions = *instructions;
-        let grains = spheres.grains;
-        let (number, places) = (&spheres.number[..], &spheres.place[grains..]);
-        let spheres = spheres.moving();
+        let (instructions, grains) = (*instructions, spheres.grains);
+        let evaluation = Evaluation::new(&self.reference, spheres, instructions, complete);
         let elastic = wall.elastic();
         let Shares {
             sections,
@@ -103,48 +150,21 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             section_of,
             ..
         } = shares;
-        let touch = |section: &mut Section, pairs: &mut [[Pairs; 2]]| {
-            for [of_grains, of_wall] in pairs {
-                for (pairs, of_grains) in [(of_grains, true), (of_wall, false)] {
-                    instructions.run(PairForces {
-                        law,
-                        pairs,
-                        of_grains,
-                        spheres,
-                        number,
-                        forces: &mut section.forces,
-                        length,
-                        time_step,
-                        tally: None,
-                        complete,
-                    });
-                }
-            }
-        };
         if let Some(elastic) = elastic {
             threads.each(sections, &mut pairs[..], &|_| 1, &|section, pairs| {
-                touch(section, pairs);
-                let [force, _] = section.forces.of_wall();
-                instructions.run(WallForces {
-                    wall: elastic,
-                    rings: &mut section.rings,
-                    spheres,
-                    places,
-                    first: section.own.of_wall().start,
-                    force,
-                    tally: None,
-                    complete,
-                });
+                for pairs in pairs {
+                    evaluation.touch(section, pairs, [None, None]);
+                }
+                evaluation.push(elastic, section, None);
             });
         } else {
             let all = (&mut pairs[..], &mut self.beside_wall[..]);
             threads.each(sections, all, &|_| 1, &|section, (pairs, beside_wall)| {
-                touch(section, pairs);
-                let mut grains = GrainsMut {
-                    moving: spheres,
-                    first: section.own.start,
-                    forces: section.forces.of_grains(),
-                };
+                for pairs in pairs {
+                    evaluation.touch(section, pairs, [None, None]);
+                }
+                let (law, time_step) = (evaluation.law, evaluation.time_step);
+                let mut grains = evaluation.grains(section);
                 for BesideWall { memory, sums } in beside_wall {
                     wall.add_forces(law, &mut grains, memory, time_step, sums);
                 }

@@ -300,6 +300,7 @@ impl Work for Prune<'_> {
         near.second.extend(chosen.clone().map(|k| list.second[k]));
         near.reach.extend(chosen.map(|k| list.reach[k]));
         near.fill_up();
+        // No more of them can touch, so that warm steps take no memory.
         memory.reserve(near.first.capacity());
     }
 }
