@@ -28,7 +28,7 @@ pub(crate) struct Neighbours<H> {
     next: Rows,
     /// Of each pair; while others keep the histories all are fresh, and not yet as many as there are pairs.
     history: Vec<H>,
-    /// Unfolded positions when the list was made.
+    /// Unfolded positions for which the list was made.
     origin: Vec<DVec3>,
     /// Skin with which it was made.
     skin: f64,
@@ -144,7 +144,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         place.is_some()
     }
 
-    /// Whether two spheres may have come closer by more than `skin` since the list was made.
+    /// Whether two spheres may be closer, by more than `skin`, than at the places for which the list was made.
     ///
     /// The bound is on differences of displacement: spheres that drift along the tube together never outdate the list.
     pub(crate) fn outdated(
@@ -157,7 +157,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         let unfolded = position.iter().zip(turns);
         let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * length));
         self.origin.len() != position.len()
-            || Drift::of(unfolded.zip(&self.origin)).approach() > skin
+            || Drift::between(unfolded.zip(&self.origin)).approach() > skin
     }
 
     /// Whether the list holds all admitted pairs of so many spheres that are now closer than (d_i + d_j)/2 + `skin`;
@@ -166,11 +166,11 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         self.origin.len() == spheres && drift.approach() + skin <= self.skin
     }
 
-    /// How far spheres, each with its number, have gone since the list was made.
+    /// How far spheres, each with its number, are from the places for which the list was made.
     pub(crate) fn drift(&self, unfolded: impl Iterator<Item = (DVec3, usize)>) -> Drift {
         let here_and_there =
             unfolded.filter_map(|(place, number)| Some((place, self.origin.get(number)?)));
-        Drift::of(here_and_there)
+        Drift::between(here_and_there)
     }
 
     /// All histories but fresh ones, with their pairs, in order.
@@ -258,7 +258,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         let late = &mut self.late;
         let unfolded = unfolded.skip(first);
         let same = late.first == first && late.origin.len() == position.len() - first;
-        let drift = Drift::of(unfolded.clone().zip(&late.origin));
+        let drift = Drift::between(unfolded.clone().zip(&late.origin));
         if same && drift.approach() + rule.skin <= late.skin {
             return;
         }
@@ -336,10 +336,14 @@ impl Drift {
     };
 
     /// Of spheres that are here now and were there.
-    fn of<'a>(here_and_there: impl Iterator<Item = (DVec3, &'a DVec3)>) -> Self {
+    fn between<'a>(here_and_there: impl Iterator<Item = (DVec3, &'a DVec3)>) -> Self {
+        Self::of(here_and_there.map(|(here, there)| here - *there))
+    }
+
+    /// The bounds of these displacements, or velocities.
+    pub(crate) fn of(displacements: impl Iterator<Item = DVec3>) -> Self {
         let mut drift = Self::NONE;
-        for (place, origin) in here_and_there {
-            let by = place - *origin;
+        for by in displacements {
             drift.lateral_squared = drift.lateral_squared.max(by.x * by.x + by.y * by.y);
             drift.least = drift.least.min(by.z);
             drift.largest = drift.largest.max(by.z);
@@ -356,8 +360,8 @@ impl Drift {
         }
     }
 
-    /// By how much two of the spheres may have come closer \[d\].
-    fn approach(self) -> f64 {
+    /// By how much two of the spheres may have come closer \[d\]; how fast they may, of velocities.
+    pub(crate) fn approach(self) -> f64 {
         let axial = (self.largest - self.least).max(0.0);
         (axial * axial + 4.0 * self.lateral_squared).sqrt()
     }

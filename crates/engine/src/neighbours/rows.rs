@@ -133,10 +133,10 @@ impl Rows {
     }
 }
 
-/// Longest row that is sorted beside others.
-const LONGEST: usize = 32;
+/// Longest row that is put in order by comparing each partner with each.
+const LONGEST: usize = 64;
 
-/// Fills rows with the partners found, and sorts them, eight rows side by side.
+/// Fills rows with the partners found, and puts them in order.
 struct InOrder<'a> {
     rows: Range<usize>,
     /// As in [`Rows`].
@@ -157,61 +157,40 @@ impl Work for InOrder<'_> {
             rows,
             start,
             whence,
-            found,
+            found: [first, second],
             mut partner,
         } = self;
-        let found_of = |row: usize| {
+        for row in rows {
             let (part, begin) = whence[row];
             let (part, begin) = (part as usize, begin as usize);
-            let length = (start[row + 1] - start[row]) as usize;
-            let [first, second] = found;
             let piece = first
                 .get(part)
                 .unwrap_or_else(|| &second[part - first.len()]);
-            &piece.found.partner[begin..begin + length]
-        };
-        let mut columns = [[u32::MAX; LANES]; LONGEST];
-        for first in rows.clone().step_by(LANES) {
-            let eight = first..rows.end.min(first + LANES);
-            let longest = eight.clone().map(|row| found_of(row).len()).max();
-            let columns = columns.get_mut(..longest.unwrap_or_default());
-            if let Some(columns) = columns {
-                columns.fill([u32::MAX; LANES]);
-                for (lane, row) in eight.clone().enumerate() {
-                    for (column, partner) in columns.iter_mut().zip(found_of(row)) {
-                        column[lane] = *partner;
-                    }
-                }
-                sort(columns);
-                for (lane, row) in eight.enumerate() {
-                    let (own, rest) = partner.split_at_mut(found_of(row).len());
-                    partner = rest;
-                    for (partner, column) in own.iter_mut().zip(&*columns) {
-                        *partner = column[lane];
-                    }
-                }
-            } else {
-                for row in eight {
-                    let (own, rest) = partner.split_at_mut(found_of(row).len());
-                    partner = rest;
-                    own.copy_from_slice(found_of(row));
-                    own.sort_unstable();
-                }
-            }
+            let length = (start[row + 1] - start[row]) as usize;
+            let (own, rest) = partner.split_at_mut(length);
+            partner = rest;
+            put_in_order(&piece.found.partner[begin..begin + length], own);
         }
     }
 }
 
-/// Sorts along the columns, in each lane by itself, by odd-even transposition.
+/// Writes numbers down in order, each behind as many as are less.
 #[inline(always)]
-fn sort(columns: &mut [[u32; LANES]]) {
-    for round in 0..columns.len() {
-        for pair in columns[round % 2..].as_chunks_mut().0 {
-            let [one, two]: [[u32; LANES]; 2] = *pair;
-            *pair = [
-                core::array::from_fn(|lane| one[lane].min(two[lane])),
-                core::array::from_fn(|lane| one[lane].max(two[lane])),
-            ];
+fn put_in_order(numbers: &[u32], ordered: &mut [u32]) {
+    if numbers.len() > LONGEST {
+        ordered.copy_from_slice(numbers);
+        ordered.sort_unstable();
+        return;
+    }
+    for eight in numbers.chunks(LANES) {
+        let mut own = [0; LANES];
+        own[..eight.len()].copy_from_slice(eight);
+        let mut less = [0_u32; LANES];
+        for number in numbers {
+            less = core::array::from_fn(|lane| less[lane] + u32::from(*number < own[lane]));
+        }
+        for (number, less) in eight.iter().zip(less) {
+            ordered[less as usize] = *number;
         }
     }
 }

@@ -17,6 +17,8 @@ mod record;
 mod section;
 mod spheres;
 
+use core::ops::Range;
+
 use peristalsis_physics::contact::NormalLaw;
 
 use self::history::PackedHistory;
@@ -53,6 +55,9 @@ pub(crate) struct Scratch {
 const LISTED: f64 = 2.5;
 /// Pairs within so many skins are chosen from it, again and again, and looked at in each step.
 const CHOSEN: f64 = 0.5;
+/// The list is made for where the spheres will be after so much of the time that it serves at least: it then serves on
+/// both sides of that, longer than one made for where they are.
+const AHEAD: f64 = 0.7;
 
 /// Advances by `steps` steps in place of the reference kernel.
 pub(crate) fn advance<N: NormalLaw, T: PackedHistory>(
@@ -218,25 +223,40 @@ impl Scratch {
         self.shares.count_borders();
     }
 
-    /// How far the spheres have gone since the list of all was made.
+    /// How far the spheres are from the places for which the list of all was made.
     fn drift<H: Copy + Default + PartialEq + Sync>(
         &mut self,
         list: &Neighbours<H>,
         length: f64,
     ) -> Drift {
-        let Spheres {
-            position, number, ..
-        } = &self.spheres;
+        self.bounds(|spheres, places| {
+            let numbers = spheres.number[places.clone()].iter();
+            let places = spheres.position[places].iter();
+            let unfolded = places.map(|place| place.unfolded(length));
+            list.drift(unfolded.zip(numbers.map(|&number| number as usize)))
+        })
+    }
+
+    /// Bounds over all spheres of what `of` bounds for those of a section.
+    fn bounds(&mut self, of: impl Fn(&Spheres, Range<usize>) -> Drift + Sync) -> Drift {
+        let spheres = &self.spheres;
         let sections = &mut self.shares.sections[..];
         self.threads.each(sections, (), &|_| 0, &|section, ()| {
-            let places = position[section.own.all()].iter();
-            let unfolded = places.map(|place| place.unfolded(length));
-            let numbers = number[section.own.all()].iter();
-            let here = unfolded.zip(numbers.map(|&number| number as usize));
-            section.drift = list.drift(here);
+            section.drift = of(spheres, section.own.all());
         });
         let drifts = self.shares.sections.iter().map(|section| section.drift);
         drifts.fold(Drift::NONE, Drift::and)
+    }
+
+    /// For how long no two spheres come closer by more than `skin`, at the velocities that they have.
+    fn time_within(&mut self, skin: f64) -> f64 {
+        let velocities = self.bounds(|spheres, places| {
+            Drift::of(spheres.velocity[places].iter().map(|v| v.vector()))
+        });
+        match velocities.approach() {
+            rate if rate > 0.0 => skin / rate,
+            _ => 0.0,
+        }
     }
 
     /// Writes the histories back to where they came from.
@@ -393,7 +413,9 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             self.beside_wall = scratch.take_up(reference, wall);
             return;
         }
-        scratch.spheres.store_places(bodies);
+        let time = AHEAD * scratch.time_within((LISTED - CHOSEN) * reference.parameters.skin);
+        let spheres = &scratch.spheres;
+        spheres.store_places_ahead(bodies, time, reference.length);
         scratch.note_pairs();
         contacts.rebuild_fresh(bodies, wall, skin, &scratch.threads);
         scratch.load_pairs(reference);

@@ -32,7 +32,7 @@ pub(super) struct Section {
     pub(super) forces: Forces,
     pub(super) moved: Moved,
     pub(super) rings: Rings,
-    /// Since the list was made.
+    /// Room: bounds of displacements or velocities of its spheres.
     pub(super) drift: Drift,
 }
 

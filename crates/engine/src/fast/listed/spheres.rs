@@ -5,7 +5,7 @@ use core::ops::Range;
 use glam::DVec3;
 
 use super::record::Record;
-use crate::bodies::{Bodies, Sphere};
+use crate::bodies::{Bodies, Sphere, fold};
 use crate::fast::threads::Cut;
 use crate::integrate::Past;
 use crate::wall::Grains;
@@ -88,6 +88,18 @@ impl Spheres {
         for (&number, record) in self.number.iter().zip(&self.position) {
             bodies.position[number as usize] = record.vector();
             bodies.turns[number as usize] = record.0[3] as i32;
+        }
+    }
+
+    /// Writes down where the spheres would be `time` later if their velocities stayed as they are.
+    pub(super) fn store_places_ahead(&self, bodies: &mut Bodies, time: f64, length: f64) {
+        let spheres = self.position.iter().zip(&self.velocity);
+        for (&number, (position, velocity)) in self.number.iter().zip(spheres) {
+            let mut place = position.vector() + velocity.vector() * time;
+            let more;
+            (place.z, more) = fold(place.z, length);
+            bodies.position[number as usize] = place;
+            bodies.turns[number as usize] = position.0[3] as i32 + more;
         }
     }
 
