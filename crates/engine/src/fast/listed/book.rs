@@ -154,41 +154,44 @@ pub(super) struct Run {
     pub(super) places: Range<usize>,
 }
 
-/// Lanes whose sums a thread adds up: what it reads of their terms are whole lines of the cache.
-const LANES_IN_TURN: usize = 2;
-
-/// Sums of some lanes over the terms of all contacts, which the lanes take in turn, row after row.
+/// Sums over the terms of contacts, which take the lanes in turn.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct InTurn {
-    /// The first of the lanes.
-    first: usize,
-    losses: [Record; LANES_IN_TURN],
-    rest: [Record; LANES_IN_TURN],
-    /// The losses of contacts of the wall with itself.
-    of_wall: [Record; LANES_IN_TURN],
+struct InTurn {
+    lanes: [Record; LANES],
+    /// Contacts so far.
+    contacts: usize,
 }
 
 impl InTurn {
-    /// For all lanes.
-    pub(super) fn all() -> [Self; LANES / LANES_IN_TURN] {
-        core::array::from_fn(|number| Self {
-            first: number * LANES_IN_TURN,
-            ..Self::default()
+    #[inline(always)]
+    fn add<M: Machine>(&mut self, terms: &[Record]) {
+        for terms in terms {
+            let lane = &mut self.lanes[self.contacts % LANES];
+            *lane = (lane.quad::<M::Quads>() + terms.quad()).record();
+            self.contacts += 1;
+        }
+    }
+
+    /// The sums over the lanes, as [`Lanes::sum`] adds them.
+    fn sum(&self) -> [f64; 4] {
+        core::array::from_fn(|number| {
+            let [a, b, c, d, e, f, g, h] = self.lanes.map(|lane| lane.0[number]);
+            ((a + e) + (c + g)) + ((b + f) + (d + h))
         })
     }
 }
 
-/// Adds up the terms that are for some of the lanes.
-pub(super) struct AddInTurn<'a> {
+/// Adds up the terms of all contacts, in the order of the list.
+pub(super) struct AddContacts<'a> {
     pub(super) pairs: &'a [[Pairs; 2]],
     /// All rows, in the order of the list.
     pub(super) runs: &'a [Run],
-    pub(super) lanes: &'a mut InTurn,
+    pub(super) tally: &'a mut Tally,
     /// Whether all sums are wanted.
     pub(super) complete: bool,
 }
 
-impl Work for AddInTurn<'_> {
+impl Work for AddContacts<'_> {
     type Answer = ();
 
     #[inline(always)]
@@ -196,85 +199,39 @@ impl Work for AddInTurn<'_> {
         let Self {
             pairs,
             runs,
-            lanes,
+            tally,
             complete,
         } = self;
-        let of_wall = pairs.iter().map(|[_, Pairs { terms, .. }]| terms);
-        let of_wall = of_wall.map(|terms| &terms.losses[..terms.contacts]);
-        let of_runs = runs.iter().map(|run| {
+        let [mut losses, mut rest, mut of_wall] = [InTurn::default(); 3];
+        for run in runs {
             let [Pairs { terms, .. }, _] = &pairs[run.section as usize];
-            (terms, terms.of_places(&run.places))
-        });
-        let of_grains = of_runs
-            .clone()
-            .map(|(terms, contacts)| &terms.losses[contacts]);
-        lanes.rest = Default::default();
-        if complete {
-            let rest = of_runs.map(|(terms, contacts)| &terms.rest[contacts]);
-            lanes.rest = add_in_turn::<M>(rest, lanes.first);
-        }
-        lanes.losses = add_in_turn::<M>(of_grains, lanes.first);
-        lanes.of_wall = add_in_turn::<M>(of_wall, lanes.first);
-    }
-}
-
-/// The sums of the lanes from `first` on, of records that stand one after the other in the lanes.
-#[inline(always)]
-fn add_in_turn<'a, M: Machine>(
-    stretches: impl Iterator<Item = &'a [Record]>,
-    first: usize,
-) -> [Record; LANES_IN_TURN] {
-    let mut sums = [Quad::<M>::splat(0.0); LANES_IN_TURN];
-    // Records until the turn of the first of these lanes.
-    let mut wait = first;
-    for records in stretches {
-        // The turn of the others may have come already.
-        for (record, turn) in records.iter().zip(LANES - wait..LANES_IN_TURN) {
-            sums[turn] = sums[turn] + record.quad();
-        }
-        for turns in records.get(wait..).unwrap_or_default().chunks(LANES) {
-            for (sum, record) in sums.iter_mut().zip(turns) {
-                *sum = *sum + record.quad();
+            let contacts = terms.of_places(&run.places);
+            losses.add::<M>(&terms.losses[contacts.clone()]);
+            if complete {
+                rest.add::<M>(&terms.rest[contacts]);
             }
         }
-        wait = (wait + LANES - records.len() % LANES) % LANES;
+        let [normal, tangential, sliding, energy] = losses.sum();
+        tally.normal_dissipation += normal;
+        tally.tangential_lost += tangential;
+        tally.sliding_lost += sliding;
+        tally.contact_energy += energy;
+        let [overlap, axial_force, ..] = rest.sum();
+        tally.total_overlap += overlap;
+        tally.wall_axial_force += axial_force;
+        for [Pairs { terms, .. }, Pairs { terms: wall, .. }] in pairs {
+            let [with_grains, with_wall, that_slide] = terms.numbers;
+            tally.grain_contacts += with_grains;
+            tally.wall_contacts += with_wall;
+            tally.sliding_contacts += that_slide;
+            tally.largest_overlap = tally.largest_overlap.max(terms.largest_overlap);
+            of_wall.add::<M>(&wall.losses[..wall.contacts]);
+        }
+        // Contacts of wall spheres with each other are no contacts of grains.
+        let [normal, _, _, energy] = of_wall.sum();
+        tally.normal_dissipation += normal;
+        tally.contact_energy += energy;
     }
-    sums.map(Quad::<M>::record)
-}
-
-/// Adds the sums of all contacts to a tally.
-pub(super) fn add_contacts(
-    pairs: &[[Pairs; 2]],
-    lanes: &[InTurn; LANES / LANES_IN_TURN],
-    tally: &mut Tally,
-) {
-    // As [`Lanes::sum`] adds the lanes.
-    let sum = |of: fn(&InTurn) -> [Record; LANES_IN_TURN]| {
-        let [[a, b], [c, d], [e, f], [g, h]] = lanes.each_ref().map(of);
-        core::array::from_fn(|number| {
-            let [a, b, c, d, e, f, g, h] = [a, b, c, d, e, f, g, h].map(|sum| sum.0[number]);
-            ((a + e) + (c + g)) + ((b + f) + (d + h))
-        })
-    };
-    let [normal, tangential, sliding, energy]: [f64; 4] = sum(|lanes| lanes.losses);
-    tally.normal_dissipation += normal;
-    tally.tangential_lost += tangential;
-    tally.sliding_lost += sliding;
-    tally.contact_energy += energy;
-    let [overlap, axial_force, ..]: [f64; 4] = sum(|lanes| lanes.rest);
-    tally.total_overlap += overlap;
-    tally.wall_axial_force += axial_force;
-    for [Pairs { terms, .. }, _] in pairs {
-        let [with_grains, with_wall, that_slide] = terms.numbers;
-        tally.grain_contacts += with_grains;
-        tally.wall_contacts += with_wall;
-        tally.sliding_contacts += that_slide;
-        tally.largest_overlap = tally.largest_overlap.max(terms.largest_overlap);
-    }
-    // Contacts of wall spheres with each other are no contacts of grains.
-    let [normal, _, _, energy]: [f64; 4] = sum(|lanes| lanes.of_wall);
-    tally.normal_dissipation += normal;
-    tally.contact_energy += energy;
 }
 
 /// Adds up the terms of the rings of all sections.

@@ -2,7 +2,7 @@
 
 use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
-use super::book::{AddInTurn, AddRings, InTurn, add_contacts};
+use super::book::{AddContacts, AddRings};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
 use super::network::{WallForces, mean_force};
@@ -171,16 +171,12 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             });
         }
         let (pairs, runs) = (&pairs[..], &runs[..]);
-        let mut lanes = InTurn::all();
-        threads.each(&mut lanes, (), &|_| 0, &|lanes, ()| {
-            instructions.run(AddInTurn {
-                pairs,
-                runs,
-                lanes,
-                complete,
-            });
+        instructions.run(AddContacts {
+            pairs,
+            runs,
+            tally,
+            complete,
         });
-        add_contacts(pairs, &lanes, tally);
         add_ended(&mut shares.pairs, ended, tally);
         let Some(elastic) = elastic else {
             for &section in &section_of[..grains] {
