@@ -176,6 +176,40 @@ impl Threads {
         };
         pool.install(|| fork(threads, &take_parts));
     }
+
+    /// Does `work` with 0, 1 and so on up to `legs`, one after the other, each by the thread to which the stretch of that leg
+    /// belongs (see [`Threads::each`]), or by this one where that does not come in time.
+    pub(crate) fn in_turn(
+        &self,
+        legs: usize,
+        stretch: &(impl Fn(usize) -> usize + Sync),
+        work: &(impl Fn(usize) + Sync),
+    ) {
+        let done = AtomicUsize::new(0);
+        if let Some(pool) = &self.0 {
+            let threads = self.number();
+            let take_legs = || {
+                let thread = rayon::current_thread_index().unwrap_or(0) % threads;
+                let own = (0..legs).filter(|leg| stretch(*leg) / PER_THREAD % threads == thread);
+                for leg in own {
+                    let since = Instant::now();
+                    while done.load(Ordering::Acquire) < leg {
+                        if since.elapsed() > PATIENCE {
+                            return;
+                        }
+                        core::hint::spin_loop();
+                    }
+                    // A thread may come twice.
+                    if done.load(Ordering::Acquire) == leg {
+                        work(leg);
+                        done.store(leg + 1, Ordering::Release);
+                    }
+                }
+            };
+            pool.install(|| fork(threads, &take_legs));
+        }
+        (done.into_inner()..legs).for_each(work);
+    }
 }
 
 /// Does the same so many times, side by side where threads are free; who comes late finds little left to do.

@@ -5,13 +5,16 @@
 
 use core::ops::Range;
 
+use super::network::MeanForce;
 use super::pairs::Pairs;
 use super::record::Record;
+use super::section::Section;
 use super::spheres::Own;
-use crate::fast::lanes::{LANES, Lanes, Quad};
+use crate::fast::lanes::{LANES, Lanes};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
+use crate::wall::ElasticWall;
 
 /// Takes the terms of sums over the spheres of a wall, eight side by side; lanes that hold none are 0.
 pub(super) trait Book<M: Machine> {
@@ -154,6 +157,44 @@ pub(super) struct Run {
     pub(super) places: Range<usize>,
 }
 
+/// Terms that one thread adds up before another goes on: those of rows of grains, or of the rings of a section.
+#[derive(Clone, Debug)]
+pub(super) struct Leg {
+    /// Most of them belong to it.
+    pub(super) section: usize,
+    /// Of grains.
+    runs: Range<usize>,
+    of_rings: bool,
+}
+
+/// A shorter run, in rows, is added up by whoever has the sums: to hand them on costs more than to fetch its terms.
+const SHORT: usize = 32;
+
+impl Leg {
+    /// All legs, in the order in which terms are added.
+    pub(super) fn of(runs: &[Run], sections: usize, legs: &mut Vec<Self>) {
+        legs.clear();
+        for (number, run) in runs.iter().enumerate() {
+            let section = run.section as usize;
+            match legs.last_mut() {
+                Some(leg) if leg.section == section || run.places.len() < SHORT => {
+                    leg.runs.end = number + 1;
+                }
+                _ => legs.push(Self {
+                    section,
+                    runs: number..number + 1,
+                    of_rings: false,
+                }),
+            }
+        }
+        legs.extend((0..sections).map(|section| Self {
+            section,
+            runs: 0..0,
+            of_rings: true,
+        }));
+    }
+}
+
 /// Sums over the terms of contacts, which take the lanes in turn.
 #[derive(Clone, Copy, Debug, Default)]
 struct InTurn {
@@ -181,44 +222,97 @@ impl InTurn {
     }
 }
 
-/// Adds up the terms of all contacts, in the order of the list.
-pub(super) struct AddContacts<'a> {
+/// Sums over the contacts of grains and over the rings of the wall, on their way from thread to thread.
+#[derive(Debug, Default)]
+pub(super) struct Carried {
+    losses: InTurn,
+    rest: InTurn,
+    /// Energy and dissipation of bonds, power of the drive, energy of tethers and dissipation by drag.
+    of_rings: [[f64; LANES]; 5],
+    pub(super) mean_force: MeanForce,
+}
+
+/// Adds the terms of a leg.
+pub(super) struct AddLeg<'a> {
+    pub(super) leg: &'a Leg,
+    pub(super) wall: Option<&'a ElasticWall>,
+    pub(super) sections: &'a [Section],
     pub(super) pairs: &'a [[Pairs; 2]],
     /// All rows, in the order of the list.
     pub(super) runs: &'a [Run],
-    pub(super) tally: &'a mut Tally,
+    pub(super) sums: &'a mut Carried,
     /// Whether all sums are wanted.
     pub(super) complete: bool,
 }
 
-impl Work for AddContacts<'_> {
+impl Work for AddLeg<'_> {
     type Answer = ();
 
     #[inline(always)]
     fn run<M: Machine>(self) {
         let Self {
+            leg,
+            wall,
+            sections,
             pairs,
             runs,
-            tally,
+            sums,
             complete,
         } = self;
-        let [mut losses, mut rest, mut of_wall] = [InTurn::default(); 3];
-        for run in runs {
+        if leg.of_rings {
+            let rings = &sections[leg.section].rings;
+            if let Some(wall) = wall {
+                sums.mean_force.add(wall, rings);
+            }
+            let mut lanes = sums.of_rings.map(|sum| Lanes::<M>::from_array(&sum));
+            let [bonds, bonds_lose, drive, tethers, drag] = &mut lanes;
+            for [energy, dissipation] in &rings.terms.bonds {
+                *bonds += Lanes::from_array(energy);
+                *bonds_lose += Lanes::from_array(dissipation);
+            }
+            for power in &rings.terms.drive {
+                *drive += Lanes::from_array(power);
+            }
+            for [energy, dissipation] in &rings.terms.tethers {
+                *tethers += Lanes::from_array(energy);
+                *drag += Lanes::from_array(dissipation);
+            }
+            sums.of_rings = lanes.map(Lanes::to_array);
+            return;
+        }
+        for run in &runs[leg.runs.clone()] {
             let [Pairs { terms, .. }, _] = &pairs[run.section as usize];
             let contacts = terms.of_places(&run.places);
-            losses.add::<M>(&terms.losses[contacts.clone()]);
+            sums.losses.add::<M>(&terms.losses[contacts.clone()]);
             if complete {
-                rest.add::<M>(&terms.rest[contacts]);
+                sums.rest.add::<M>(&terms.rest[contacts]);
             }
         }
-        let [normal, tangential, sliding, energy] = losses.sum();
+    }
+}
+
+/// Adds what is left when all legs are done, and the sums to the tally.
+pub(super) struct AddAll<'a> {
+    pub(super) sums: Carried,
+    pub(super) pairs: &'a [[Pairs; 2]],
+    pub(super) tally: &'a mut Tally,
+}
+
+impl Work for AddAll<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        let Self { sums, pairs, tally } = self;
+        let [normal, tangential, sliding, energy] = sums.losses.sum();
         tally.normal_dissipation += normal;
         tally.tangential_lost += tangential;
         tally.sliding_lost += sliding;
         tally.contact_energy += energy;
-        let [overlap, axial_force, ..] = rest.sum();
+        let [overlap, axial_force, ..] = sums.rest.sum();
         tally.total_overlap += overlap;
         tally.wall_axial_force += axial_force;
+        let mut of_wall = InTurn::default();
         for [Pairs { terms, .. }, Pairs { terms: wall, .. }] in pairs {
             let [with_grains, with_wall, that_slide] = terms.numbers;
             tally.grain_contacts += with_grains;
@@ -231,33 +325,12 @@ impl Work for AddContacts<'_> {
         let [normal, _, _, energy] = of_wall.sum();
         tally.normal_dissipation += normal;
         tally.contact_energy += energy;
-    }
-}
-
-/// Adds up the terms of the rings of all sections.
-pub(super) struct AddRings<'a, I: Iterator<Item = &'a WallTerms>> {
-    pub(super) sections: I,
-    pub(super) tally: &'a mut Tally,
-}
-
-impl<'a, I: Iterator<Item = &'a WallTerms>> Work for AddRings<'a, I> {
-    type Answer = ();
-
-    #[inline(always)]
-    fn run<M: Machine>(self) {
-        let mut sums = Sums::<M>::default();
-        for terms in self.sections {
-            for [energy, dissipation] in &terms.bonds {
-                sums.network_energy += Lanes::from_array(energy);
-                sums.network_dissipation += Lanes::from_array(dissipation);
-            }
-            for power in &terms.drive {
-                sums.drive(Lanes::from_array(power));
-            }
-            for [energy, dissipation] in &terms.tethers {
-                sums.tethers([Lanes::from_array(energy), Lanes::from_array(dissipation)]);
-            }
-        }
-        sums.add_to(self.tally);
+        let of_rings = sums.of_rings.map(|sum| Lanes::<M>::from_array(&sum).sum());
+        let [bonds, bonds_lose, drive, tethers, drag] = of_rings;
+        tally.network_energy += bonds;
+        tally.network_dissipation += bonds_lose;
+        tally.drive_power += drive;
+        tally.keep_energy += tethers;
+        tally.drag_dissipation += drag;
     }
 }

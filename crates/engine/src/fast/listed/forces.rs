@@ -1,11 +1,13 @@
 //! All forces on the spheres: of the only section as they are found, of several shared out to threads.
 
+use std::sync::{Mutex, PoisonError};
+
 use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
-use super::book::{AddContacts, AddRings};
+use super::book::{AddAll, AddLeg, Carried};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
-use super::network::{WallForces, mean_force};
+use super::network::{MeanForce, WallForces};
 use super::pairs::{Ended, Pairs};
 use super::section::{BesideWall, Section, Shares};
 use super::spheres::{GrainsMut, Moving, Spheres};
@@ -126,7 +128,9 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             return;
         };
         evaluation.push(elastic, section, Some(tally));
-        self.mean_wall_force = mean_force(elastic, core::iter::once(&section.rings), tally);
+        let mut mean_force = MeanForce::default();
+        mean_force.add(elastic, &section.rings);
+        self.mean_wall_force = mean_force.finish(elastic, tally);
     }
 
     /// The same by several threads: for each section its contacts and then the forces of its wall, and when all are done the
@@ -147,6 +151,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             sections,
             pairs,
             runs,
+            legs,
             section_of,
             ..
         } = shares;
@@ -171,12 +176,24 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             });
         }
         let (pairs, runs) = (&pairs[..], &runs[..]);
-        instructions.run(AddContacts {
-            pairs,
-            runs,
-            tally,
-            complete,
+        let (of_sections, legs) = (&sections[..], &legs[..]);
+        let sums = Mutex::new(Carried::default());
+        let section_of_leg = |leg: usize| legs[leg].section;
+        threads.in_turn(legs.len(), &section_of_leg, &|leg| {
+            let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
+            instructions.run(AddLeg {
+                leg: &legs[leg],
+                wall: elastic,
+                sections: of_sections,
+                pairs,
+                runs,
+                sums: &mut sums,
+                complete,
+            });
         });
+        let sums = sums.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let mean_force = sums.mean_force;
+        instructions.run(AddAll { sums, pairs, tally });
         add_ended(&mut shares.pairs, ended, tally);
         let Some(elastic) = elastic else {
             for &section in &section_of[..grains] {
@@ -187,12 +204,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             }
             return;
         };
-        let rings = || sections.iter().map(|section| &section.rings);
-        instructions.run(AddRings {
-            sections: rings().map(|rings| &rings.terms),
-            tally,
-        });
-        self.mean_wall_force = mean_force(elastic, rings(), tally);
+        self.mean_wall_force = mean_force.finish(elastic, tally);
     }
 }
 

@@ -230,40 +230,58 @@ impl WallForces<'_> {
     }
 }
 
-/// Adds the power of the mean force that is taken off the spheres of the wall; answers what of it is still to be taken off
-/// each.
-pub(super) fn mean_force<'a>(
-    wall: &ElasticWall,
-    sections: impl Iterator<Item = &'a Rings>,
-    tally: &mut Tally,
-) -> Record {
-    let lattice = wall.lattice();
-    let net_force = wall.parameters().network.tethers.net_force;
-    let spheres = match net_force {
-        NetForce::Free => return Record::ZERO,
-        NetForce::RemovedPerRing => lattice.spheres_per_ring as usize,
-        NetForce::Removed => lattice.spheres(),
-    };
-    let mean = |force: Record| Record(force.0.map(|force| force * (1.0 / spheres as f64)));
-    let mut remove = |force: Record, velocity: Record| {
-        tally.keep_power -= mean(force).vector().dot(velocity.vector());
-    };
-    let rings = sections.flat_map(|section| &section.of_rings);
-    if net_force == NetForce::RemovedPerRing {
-        rings.for_each(|[force, velocity]| remove(*force, *velocity));
-        return Record::ZERO;
-    }
-    let mut total = [Record::ZERO; 2];
-    for of_ring in rings {
-        for (total, of_ring) in total.iter_mut().zip(of_ring) {
-            for (total, of_ring) in total.0.iter_mut().zip(of_ring.0) {
-                *total += of_ring;
+/// The mean force that is taken off the spheres of the wall, on its way through the sums over the rings.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct MeanForce {
+    /// Sums of the forces on the spheres of all rings so far, and of their velocities.
+    total: [Record; 2],
+    /// Power of what was taken off ring by ring, with its sign turned.
+    taken_off: f64,
+}
+
+impl MeanForce {
+    /// Adds the rings of a section.
+    pub(super) fn add(&mut self, wall: &ElasticWall, rings: &Rings) {
+        let per_ring = wall.lattice().spheres_per_ring as usize;
+        let network = &wall.parameters().network;
+        for [force, velocity] in &rings.of_rings {
+            if network.tethers.net_force == NetForce::RemovedPerRing {
+                self.taken_off += power_of_mean(force, velocity, per_ring);
+                continue;
+            }
+            for (total, of_ring) in self.total.iter_mut().zip([force, velocity]) {
+                for (total, of_ring) in total.0.iter_mut().zip(of_ring.0) {
+                    *total += of_ring;
+                }
             }
         }
     }
-    let [force, velocity] = total;
-    remove(force, velocity);
-    mean(force)
+
+    /// Adds its power to the tally; answers what of it is still to be taken off each sphere.
+    pub(super) fn finish(self, wall: &ElasticWall, tally: &mut Tally) -> Record {
+        match wall.parameters().network.tethers.net_force {
+            NetForce::Free => Record::ZERO,
+            NetForce::RemovedPerRing => {
+                tally.keep_power -= self.taken_off;
+                Record::ZERO
+            }
+            NetForce::Removed => {
+                let [force, velocity] = &self.total;
+                let spheres = wall.lattice().spheres();
+                tally.keep_power -= power_of_mean(force, velocity, spheres);
+                mean(force, spheres)
+            }
+        }
+    }
+}
+
+fn mean(force: &Record, spheres: usize) -> Record {
+    Record(force.0.map(|force| force * (1.0 / spheres as f64)))
+}
+
+/// Power of the mean force on so many spheres, of the sums of forces and velocities.
+fn power_of_mean(force: &Record, velocity: &Record, spheres: usize) -> f64 {
+    mean(force, spheres).vector().dot(velocity.vector())
 }
 
 /// Turns the forces of the last ring's bonds into forces on this ring, whose parity is `parity`.

@@ -5,7 +5,7 @@
 
 use core::ops::Range;
 
-use super::book::Run;
+use super::book::{Leg, Run};
 use super::motion::Moved;
 use super::network::Rings;
 use super::pairs::{Border, Pairs};
@@ -58,6 +58,8 @@ pub(super) struct Shares {
     pub(super) offers: Vec<Offer>,
     /// All rows of grains, in the order of the list.
     pub(super) runs: Vec<Run>,
+    /// In which the terms of their contacts, and of the rings, are added up.
+    pub(super) legs: Vec<Leg>,
     /// The section of each sphere, by its number.
     pub(super) section_of: Vec<u16>,
     /// Room: of each slice of the tube the work that its spheres make, then its section.
@@ -236,5 +238,6 @@ impl Shares {
                 sphere += 1;
             }
         }
+        Leg::of(&self.runs, sections, &mut self.legs);
     }
 }

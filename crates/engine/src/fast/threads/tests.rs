@@ -77,3 +77,23 @@ fn a_panic_of_any_thread_comes_to_the_caller() {
     // They serve on.
     assert_eq!(written(&threads, 12), expected(12));
 }
+
+#[test]
+fn legs_are_done_in_turn_whoever_comes() {
+    for number in [1, 2, 3, 5] {
+        let threads = Threads::new(number).expect("threads");
+        // Stretches that belong to threads forth and back, and to none.
+        for stretch in [|leg: usize| leg, |leg| 7 - leg % 8, |_| 0] {
+            for legs in [0, 1, 2, 23] {
+                let done = Mutex::new(Vec::new());
+                threads.install(|| {
+                    threads.in_turn(legs, &stretch, &|leg| {
+                        done.lock().expect("no panic").push(leg)
+                    });
+                });
+                let done = done.into_inner().expect("no panic");
+                assert_eq!(done, (0..legs).collect::<Vec<_>>());
+            }
+        }
+    }
+}
