@@ -174,7 +174,7 @@ impl Work for InOrder<'_> {
     }
 }
 
-/// Writes numbers down in order, each behind as many as are less.
+/// Writes numbers, no two the same, down in order, each behind as many as are less.
 #[inline(always)]
 fn put_in_order(numbers: &[u32], ordered: &mut [u32]) {
     if numbers.len() > LONGEST {
@@ -191,6 +191,24 @@ fn put_in_order(numbers: &[u32], ordered: &mut [u32]) {
         }
         for (number, less) in eight.iter().zip(less) {
             ordered[less as usize] = *number;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_of_any_length_are_put_in_order() {
+        for length in 0..=LONGEST + 1 {
+            // No two are the same, for 37 and 101 have no factor in common.
+            let numbers: Vec<u32> = (0..length as u32).map(|k| k * 37 % 101).collect();
+            let mut ordered = vec![u32::MAX; length];
+            put_in_order(&numbers, &mut ordered);
+            let mut expected = numbers;
+            expected.sort_unstable();
+            assert_eq!(ordered, expected);
         }
     }
 }

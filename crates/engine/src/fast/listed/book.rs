@@ -1,7 +1,8 @@
 //! What is added up over contacts and over the spheres of a wall, at once or later.
 //!
 //! Sums have one order, whichever threads worked out their terms. One section adds them up as it goes. Of several, each
-//! writes down the terms of its own rows of the list, or rings, and then they are added in the order of the list.
+//! writes down the terms of its own rows of the list, or rings, and then they are added in the order of the list: by the
+//! thread that wrote them, which hands the sums on, so that few terms go from core to core.
 
 use core::ops::Range;
 
@@ -171,8 +172,8 @@ pub(super) struct Leg {
 const SHORT: usize = 32;
 
 impl Leg {
-    /// All legs, in the order in which terms are added.
-    pub(super) fn of(runs: &[Run], sections: usize, legs: &mut Vec<Self>) {
+    /// All legs, in the order in which terms are added; so many sections have rings.
+    pub(super) fn of(runs: &[Run], with_rings: usize, legs: &mut Vec<Self>) {
         legs.clear();
         for (number, run) in runs.iter().enumerate() {
             let section = run.section as usize;
@@ -187,7 +188,7 @@ impl Leg {
                 }),
             }
         }
-        legs.extend((0..sections).map(|section| Self {
+        legs.extend((0..with_rings).map(|section| Self {
             section,
             runs: 0..0,
             of_rings: true,

@@ -238,6 +238,7 @@ impl Shares {
                 sphere += 1;
             }
         }
-        Leg::of(&self.runs, sections, &mut self.legs);
+        let with_rings = if rings == 0 { 0 } else { sections };
+        Leg::of(&self.runs, with_rings, &mut self.legs);
     }
 }

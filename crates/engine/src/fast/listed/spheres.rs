@@ -84,7 +84,7 @@ impl Spheres {
     }
 
     /// Writes the places back.
-    pub(super) fn store_places(&self, bodies: &mut Bodies) {
+    fn store_places(&self, bodies: &mut Bodies) {
         for (&number, record) in self.number.iter().zip(&self.position) {
             bodies.position[number as usize] = record.vector();
             bodies.turns[number as usize] = record.0[3] as i32;

@@ -82,7 +82,7 @@ fn a_panic_of_any_thread_comes_to_the_caller() {
 fn legs_are_done_in_turn_whoever_comes() {
     for number in [1, 2, 3, 5] {
         let threads = Threads::new(number).expect("threads");
-        // Stretches that belong to threads forth and back, and to none.
+        // Stretches that belong to one thread after the other, forth and back, or all to the first.
         for stretch in [|leg: usize| leg, |leg| 7 - leg % 8, |_| 0] {
             for legs in [0, 1, 2, 23] {
                 let done = Mutex::new(Vec::new());
