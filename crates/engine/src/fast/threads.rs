@@ -177,38 +177,60 @@ impl Threads {
         pool.install(|| fork(threads, &take_parts));
     }
 
-    /// Does `work` with 0, 1 and so on up to `legs`, one after the other, each by the thread to which the stretch of that leg
-    /// belongs (see [`Threads::each`]), or by this one where that does not come in time.
-    pub(crate) fn in_turn(
+    /// Does `work` with the legs of each chain, one after the other. Each is done by the thread to which the stretch of that
+    /// leg belongs (see [`Threads::each`]), or by this one where that does not come in time. Chains do not wait for each other.
+    pub(crate) fn in_turn<L: Sync, const CHAINS: usize>(
         &self,
-        legs: usize,
-        stretch: &(impl Fn(usize) -> usize + Sync),
-        work: &(impl Fn(usize) + Sync),
+        chains: [&[L]; CHAINS],
+        stretch: &(impl Fn(&L) -> usize + Sync),
+        work: &(impl Fn(&L) + Sync),
     ) {
-        let done = AtomicUsize::new(0);
+        let done = [const { AtomicUsize::new(0) }; CHAINS];
         if let Some(pool) = &self.0 {
             let threads = self.number();
             let take_legs = || {
                 let thread = rayon::current_thread_index().unwrap_or(0) % threads;
-                let own = (0..legs).filter(|leg| stretch(*leg) / PER_THREAD % threads == thread);
-                for leg in own {
-                    let since = Instant::now();
-                    while done.load(Ordering::Acquire) < leg {
-                        if since.elapsed() > PATIENCE {
+                for (legs, done) in chains.iter().zip(&done) {
+                    let legs = legs.iter().enumerate();
+                    let belongs = |leg| stretch(leg) / PER_THREAD % threads == thread;
+                    for (turn, leg) in legs.filter(|(_, leg)| belongs(leg)) {
+                        if !wait_for(turn, done) {
                             return;
                         }
-                        core::hint::spin_loop();
+                        // A thread may come twice.
+                        if done.load(Ordering::Acquire) == turn {
+                            work(leg);
+                            done.store(turn + 1, Ordering::Release);
+                        }
                     }
-                    // A thread may come twice.
-                    if done.load(Ordering::Acquire) == leg {
-                        work(leg);
-                        done.store(leg + 1, Ordering::Release);
-                    }
+                }
+                // Who left now would come again in place of a thread that has not come yet.
+                for (legs, done) in chains.iter().zip(&done) {
+                    wait_for(legs.len(), done);
                 }
             };
             pool.install(|| fork(threads, &take_legs));
         }
-        (done.into_inner()..legs).for_each(work);
+        for (legs, done) in chains.into_iter().zip(done) {
+            legs[done.into_inner()..].iter().for_each(work);
+        }
+    }
+}
+
+/// Waits until so many are done; answers that they are not where none has been for long.
+fn wait_for(number: usize, done: &AtomicUsize) -> bool {
+    let (mut last, mut since) = (0, Instant::now());
+    loop {
+        let now = done.load(Ordering::Acquire);
+        if now >= number {
+            return true;
+        }
+        if now != last {
+            (last, since) = (now, Instant::now());
+        } else if since.elapsed() > PATIENCE {
+            return false;
+        }
+        core::hint::spin_loop();
     }
 }
 

@@ -6,10 +6,9 @@
 
 use core::ops::Range;
 
-use super::network::MeanForce;
+use super::network::{MeanForce, Rings};
 use super::pairs::Pairs;
 use super::record::Record;
-use super::section::Section;
 use super::spheres::Own;
 use crate::fast::lanes::{LANES, Lanes};
 use crate::fast::machine::{Machine, Work};
@@ -165,7 +164,7 @@ pub(super) struct Leg {
     pub(super) section: usize,
     /// Of grains.
     runs: Range<usize>,
-    of_rings: bool,
+    pub(super) of_rings: bool,
 }
 
 /// A shorter run, in rows, is added up by whoever has the sums: to hand them on costs more than to fetch its terms.
@@ -223,78 +222,84 @@ impl InTurn {
     }
 }
 
-/// Sums over the contacts of grains and over the rings of the wall, on their way from thread to thread.
+/// Sums over the contacts of grains, on their way from thread to thread.
 #[derive(Debug, Default)]
-pub(super) struct Carried {
+pub(super) struct OfContacts {
     losses: InTurn,
     rest: InTurn,
+}
+
+/// Sums over the rings of the wall, likewise.
+#[derive(Debug, Default)]
+pub(super) struct OfRings {
     /// Energy and dissipation of bonds, power of the drive, energy of tethers and dissipation by drag.
-    of_rings: [[f64; LANES]; 5],
+    lanes: [[f64; LANES]; 5],
     pub(super) mean_force: MeanForce,
 }
 
-/// Adds the terms of a leg.
-pub(super) struct AddLeg<'a> {
+/// Adds the terms of the contacts of a leg.
+pub(super) struct AddContacts<'a> {
     pub(super) leg: &'a Leg,
-    pub(super) wall: Option<&'a ElasticWall>,
-    pub(super) sections: &'a [Section],
     pub(super) pairs: &'a [[Pairs; 2]],
     /// All rows, in the order of the list.
     pub(super) runs: &'a [Run],
-    pub(super) sums: &'a mut Carried,
+    pub(super) sums: &'a mut OfContacts,
     /// Whether all sums are wanted.
     pub(super) complete: bool,
 }
 
-impl Work for AddLeg<'_> {
+impl Work for AddContacts<'_> {
     type Answer = ();
 
     #[inline(always)]
     fn run<M: Machine>(self) {
-        let Self {
-            leg,
-            wall,
-            sections,
-            pairs,
-            runs,
-            sums,
-            complete,
-        } = self;
-        if leg.of_rings {
-            let rings = &sections[leg.section].rings;
-            if let Some(wall) = wall {
-                sums.mean_force.add(wall, rings);
-            }
-            let mut lanes = sums.of_rings.map(|sum| Lanes::<M>::from_array(&sum));
-            let [bonds, bonds_lose, drive, tethers, drag] = &mut lanes;
-            for [energy, dissipation] in &rings.terms.bonds {
-                *bonds += Lanes::from_array(energy);
-                *bonds_lose += Lanes::from_array(dissipation);
-            }
-            for power in &rings.terms.drive {
-                *drive += Lanes::from_array(power);
-            }
-            for [energy, dissipation] in &rings.terms.tethers {
-                *tethers += Lanes::from_array(energy);
-                *drag += Lanes::from_array(dissipation);
-            }
-            sums.of_rings = lanes.map(Lanes::to_array);
-            return;
-        }
-        for run in &runs[leg.runs.clone()] {
-            let [Pairs { terms, .. }, _] = &pairs[run.section as usize];
+        for run in &self.runs[self.leg.runs.clone()] {
+            let [Pairs { terms, .. }, _] = &self.pairs[run.section as usize];
             let contacts = terms.of_places(&run.places);
-            sums.losses.add::<M>(&terms.losses[contacts.clone()]);
-            if complete {
-                sums.rest.add::<M>(&terms.rest[contacts]);
+            let losses = &terms.losses[contacts.clone()];
+            self.sums.losses.add::<M>(losses);
+            if self.complete {
+                self.sums.rest.add::<M>(&terms.rest[contacts]);
             }
         }
     }
 }
 
+/// Adds the terms of the rings of a section.
+pub(super) struct AddRings<'a> {
+    pub(super) wall: &'a ElasticWall,
+    pub(super) rings: &'a Rings,
+    pub(super) sums: &'a mut OfRings,
+}
+
+impl Work for AddRings<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        let Self { wall, rings, sums } = self;
+        sums.mean_force.add(wall, rings);
+        let mut lanes = sums.lanes.map(|sum| Lanes::<M>::from_array(&sum));
+        let [bonds, bonds_lose, drive, tethers, drag] = &mut lanes;
+        for [energy, dissipation] in &rings.terms.bonds {
+            *bonds += Lanes::from_array(energy);
+            *bonds_lose += Lanes::from_array(dissipation);
+        }
+        for power in &rings.terms.drive {
+            *drive += Lanes::from_array(power);
+        }
+        for [energy, dissipation] in &rings.terms.tethers {
+            *tethers += Lanes::from_array(energy);
+            *drag += Lanes::from_array(dissipation);
+        }
+        sums.lanes = lanes.map(Lanes::to_array);
+    }
+}
+
 /// Adds what is left when all legs are done, and the sums to the tally.
 pub(super) struct AddAll<'a> {
-    pub(super) sums: Carried,
+    pub(super) of_contacts: OfContacts,
+    pub(super) of_rings: OfRings,
     pub(super) pairs: &'a [[Pairs; 2]],
     pub(super) tally: &'a mut Tally,
 }
@@ -304,13 +309,18 @@ impl Work for AddAll<'_> {
 
     #[inline(always)]
     fn run<M: Machine>(self) {
-        let Self { sums, pairs, tally } = self;
-        let [normal, tangential, sliding, energy] = sums.losses.sum();
+        let Self {
+            of_contacts,
+            of_rings,
+            pairs,
+            tally,
+        } = self;
+        let [normal, tangential, sliding, energy] = of_contacts.losses.sum();
         tally.normal_dissipation += normal;
         tally.tangential_lost += tangential;
         tally.sliding_lost += sliding;
         tally.contact_energy += energy;
-        let [overlap, axial_force, ..] = sums.rest.sum();
+        let [overlap, axial_force, ..] = of_contacts.rest.sum();
         tally.total_overlap += overlap;
         tally.wall_axial_force += axial_force;
         let mut of_wall = InTurn::default();
@@ -326,7 +336,7 @@ impl Work for AddAll<'_> {
         let [normal, _, _, energy] = of_wall.sum();
         tally.normal_dissipation += normal;
         tally.contact_energy += energy;
-        let of_rings = sums.of_rings.map(|sum| Lanes::<M>::from_array(&sum).sum());
+        let of_rings = of_rings.lanes.map(|sum| Lanes::<M>::from_array(&sum).sum());
         let [bonds, bonds_lose, drive, tethers, drag] = of_rings;
         tally.network_energy += bonds;
         tally.network_dissipation += bonds_lose;

@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
-use super::book::{AddAll, AddLeg, Carried};
+use super::book::{AddAll, AddContacts, AddRings, OfContacts, OfRings};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
 use super::network::{MeanForce, WallForces};
@@ -176,24 +176,35 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             });
         }
         let (pairs, runs) = (&pairs[..], &runs[..]);
-        let (of_sections, legs) = (&sections[..], &legs[..]);
-        let sums = Mutex::new(Carried::default());
-        let section_of_leg = |leg: usize| legs[leg].section;
-        threads.in_turn(legs.len(), &section_of_leg, &|leg| {
-            let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
-            instructions.run(AddLeg {
-                leg: &legs[leg],
-                wall: elastic,
-                sections: of_sections,
+        let (of_grains, with_rings) = legs.split_at(legs.partition_point(|leg| !leg.of_rings));
+        let of_contacts = Mutex::new(OfContacts::default());
+        let of_rings = Mutex::new(OfRings::default());
+        let chains = [of_grains, with_rings];
+        threads.in_turn(chains, &|leg| leg.section, &|leg| match elastic {
+            Some(wall) if leg.of_rings => instructions.run(AddRings {
+                wall,
+                rings: &sections[leg.section].rings,
+                sums: &mut of_rings.lock().unwrap_or_else(PoisonError::into_inner),
+            }),
+            _ => instructions.run(AddContacts {
+                leg,
                 pairs,
                 runs,
-                sums: &mut sums,
+                sums: &mut of_contacts.lock().unwrap_or_else(PoisonError::into_inner),
                 complete,
-            });
+            }),
         });
-        let sums = sums.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let mean_force = sums.mean_force;
-        instructions.run(AddAll { sums, pairs, tally });
+        let of_contacts = of_contacts.into_inner();
+        let of_rings = of_rings
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner);
+        let mean_force = of_rings.mean_force;
+        instructions.run(AddAll {
+            of_contacts: of_contacts.unwrap_or_else(PoisonError::into_inner),
+            of_rings,
+            pairs,
+            tally,
+        });
         add_ended(&mut shares.pairs, ended, tally);
         let Some(elastic) = elastic else {
             for &section in &section_of[..grains] {

@@ -85,14 +85,22 @@ fn legs_are_done_in_turn_whoever_comes() {
         // Stretches that belong to one thread after the other, forth and back, or all to the first.
         for stretch in [|leg: usize| leg, |leg| 7 - leg % 8, |_| 0] {
             for legs in [0, 1, 2, 23] {
+                // The second chain is half as long.
+                let chains = [(0, legs), (1, legs / 2)];
+                let chains = chains
+                    .map(|(chain, legs)| -> Vec<_> { (0..legs).map(|leg| (chain, leg)).collect() });
                 let done = Mutex::new(Vec::new());
                 threads.install(|| {
-                    threads.in_turn(legs, &stretch, &|leg| {
-                        done.lock().expect("no panic").push(leg)
+                    let chains = chains.each_ref().map(Vec::as_slice);
+                    threads.in_turn(chains, &|leg| stretch(leg.1), &|leg| {
+                        done.lock().expect("no panic").push(*leg);
                     });
                 });
                 let done = done.into_inner().expect("no panic");
-                assert_eq!(done, (0..legs).collect::<Vec<_>>());
+                for (number, chain) in chains.iter().enumerate() {
+                    let of_chain = done.iter().copied().filter(|leg| leg.0 == number);
+                    assert_eq!(of_chain.collect::<Vec<_>>(), *chain);
+                }
             }
         }
     }
