@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
 
 use crate::error::EngineError;
+use crate::fast::machine::{Apart, Team};
 use crate::parameters::Kernel;
 
 /// Moving spheres that a thread must have to itself to pay: some 0.1 ms of work a step, as measured with two (BENCHMARKS.md).
@@ -30,13 +31,17 @@ pub fn processors() -> usize {
 /// Stretches of work for each thread: one that is done early takes what others have not begun.
 const PER_THREAD: usize = 2;
 
-/// Without work a thread stays awake for so long, then it looks again at such intervals: the parts of a step follow each
-/// other within some 10 us, and to wake a thread takes longer.
-const PATIENCE: Duration = Duration::from_micros(50);
+/// Without work a thread stays awake for so long: between the parts of a step that are shared out one thread may prepare
+/// the next for some 0.1 ms.
+const PATIENCE: Duration = Duration::from_micros(200);
+/// Then it looks again at such intervals; nobody waits for it longer.
+const NAP: Duration = Duration::from_micros(50);
+/// Awake, it looks so often for work of its team before it looks for work of rayon.
+const LOOKS: usize = 16;
 
 /// Threads, where there are to be more than one.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Threads(Option<Arc<ThreadPool>>);
+pub(crate) struct Threads(Option<Arc<(ThreadPool, Team)>>);
 
 thread_local! {
     /// Whether this thread leads an advance or waits for its parts, and needs not wait for those of another.
@@ -86,11 +91,18 @@ impl Threads {
                 threads,
                 reason: error.to_string(),
             })?;
-        Ok(Self(pool.map(Arc::new)))
+        let with_team = |pool| Arc::new((pool, Team::new(threads)));
+        Ok(Self(pool.map(with_team)))
     }
 
     pub(crate) fn number(&self) -> usize {
-        self.0.as_ref().map_or(1, |pool| pool.current_num_threads())
+        let threads = |of: &Arc<(ThreadPool, Team)>| of.0.current_num_threads();
+        self.0.as_ref().map_or(1, threads)
+    }
+
+    /// Which of them this one is.
+    fn index(&self) -> usize {
+        rayon::current_thread_index().unwrap_or(0) % self.number()
     }
 
     /// Into how many stretches a work is best cut.
@@ -108,12 +120,12 @@ impl Threads {
 
     /// Does work that shares itself out, part after part; the threads stay awake for the parts.
     pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        let Some(pool) = &self.0 else {
+        let Some((pool, team)) = self.0.as_deref() else {
             return work();
         };
         let goes_on = AtomicBool::new(true);
         pool.scope(|scope| {
-            scope.spawn_broadcast(|_, _| stay_awake(&goes_on));
+            scope.spawn_broadcast(|_, _| stay_awake(team, &goes_on));
             let _end = End {
                 goes_on: &goes_on,
                 took_part: TAKES_PART.replace(true),
@@ -133,7 +145,7 @@ impl Threads {
         length: &(impl Fn(&S) -> usize + Sync),
         work: &(impl Fn(&mut S, P) + Sync),
     ) {
-        let Some(pool) = &self.0 else {
+        let Some((_, team)) = self.0.as_deref() else {
             for stretch in stretches {
                 let (own, rest) = all.cut(length(stretch));
                 all = rest;
@@ -149,32 +161,24 @@ impl Threads {
             parts.push(Mutex::new(Some((stretch, own))));
         }
         let threads = self.number();
-        let begun: Vec<AtomicUsize> = (0..threads).map(|_| AtomicUsize::new(0)).collect();
-        let at_work = AtomicUsize::new(0);
-        let take_parts = || {
-            at_work.fetch_add(1, Ordering::Relaxed);
-            let thread = rayon::current_thread_index().unwrap_or(0) % threads;
+        let begun: Vec<Apart<AtomicUsize>> = (0..threads).map(|_| Apart::default()).collect();
+        team.call(&|| {
+            let thread = self.index();
             for owner in (thread..threads).chain(0..thread) {
-                loop {
-                    let turn = begun[owner].fetch_add(1, Ordering::Relaxed);
+                let Apart(begun) = &begun[owner];
+                let part = |turn: usize| {
                     let round = turn / PER_THREAD * threads + owner;
-                    let Some(part) = parts.get(round * PER_THREAD + turn % PER_THREAD) else {
-                        break;
-                    };
-                    let part = part.lock().ok().and_then(|mut part| part.take());
+                    parts.get(round * PER_THREAD + turn % PER_THREAD)
+                };
+                while part(begun.load(Ordering::Relaxed)).is_some() {
+                    let part = part(begun.fetch_add(1, Ordering::Relaxed));
+                    let part = part.and_then(|part| part.lock().ok()?.take());
                     if let Some((stretch, own)) = part {
                         work(stretch, own);
                     }
                 }
             }
-            at_work.fetch_sub(1, Ordering::Release);
-            // The others are about to end; rayon would soon fall asleep.
-            let since = Instant::now();
-            while at_work.load(Ordering::Acquire) > 0 && since.elapsed() < PATIENCE {
-                core::hint::spin_loop();
-            }
-        };
-        pool.install(|| fork(threads, &take_parts));
+        });
     }
 
     /// Does `work` with the legs of each chain, one after the other. Each is done by the thread to which the stretch of that
@@ -186,10 +190,10 @@ impl Threads {
         work: &(impl Fn(&L) + Sync),
     ) {
         let done = [const { AtomicUsize::new(0) }; CHAINS];
-        if let Some(pool) = &self.0 {
+        if let Some((_, team)) = self.0.as_deref() {
             let threads = self.number();
-            let take_legs = || {
-                let thread = rayon::current_thread_index().unwrap_or(0) % threads;
+            team.call(&|| {
+                let thread = self.index();
                 for (legs, done) in chains.iter().zip(&done) {
                     let legs = legs.iter().enumerate();
                     let belongs = |leg| stretch(leg) / PER_THREAD % threads == thread;
@@ -197,19 +201,15 @@ impl Threads {
                         if !wait_for(turn, done) {
                             return;
                         }
-                        // A thread may come twice.
-                        if done.load(Ordering::Acquire) == turn {
-                            work(leg);
-                            done.store(turn + 1, Ordering::Release);
-                        }
+                        work(leg);
+                        done.store(turn + 1, Ordering::Release);
                     }
                 }
-                // Who left now would come again in place of a thread that has not come yet.
+                // Others may wait for a leg that nobody does if this thread leaves and the call ends.
                 for (legs, done) in chains.iter().zip(&done) {
                     wait_for(legs.len(), done);
                 }
-            };
-            pool.install(|| fork(threads, &take_legs));
+            });
         }
         for (legs, done) in chains.into_iter().zip(done) {
             legs[done.into_inner()..].iter().for_each(work);
@@ -227,37 +227,28 @@ fn wait_for(number: usize, done: &AtomicUsize) -> bool {
         }
         if now != last {
             (last, since) = (now, Instant::now());
-        } else if since.elapsed() > PATIENCE {
+        } else if since.elapsed() > NAP {
             return false;
         }
         core::hint::spin_loop();
     }
 }
 
-/// Does the same so many times, side by side where threads are free; who comes late finds little left to do.
-fn fork(times: usize, work: &(impl Fn() + Sync)) {
-    match times {
-        0 | 1 => work(),
-        _ => {
-            let half = times / 2;
-            rayon::join(|| fork(times - half, work), || fork(half, work));
-        }
-    }
-}
-
-/// Waits for parts of an advance, unless this thread does so already.
-fn stay_awake(goes_on: &AtomicBool) {
-    if TAKES_PART.replace(true) {
+/// Serves a team, and rayon, until an advance ends, unless this thread does so already.
+fn stay_awake(team: &Team, goes_on: &AtomicBool) {
+    let Some(member) = rayon::current_thread_index().filter(|_| !TAKES_PART.replace(true)) else {
         return;
-    }
-    let mut idle = None;
+    };
+    let (mut last, mut idle) = (0, None);
     while goes_on.load(Ordering::Relaxed) {
-        if rayon::yield_now() == Some(Yield::Executed) {
+        let served = (0..LOOKS).any(|_| {
+            core::hint::spin_loop();
+            team.take_part(member, &mut last)
+        });
+        if served || rayon::yield_now() == Some(Yield::Executed) {
             idle = None;
         } else if idle.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
-            thread::sleep(PATIENCE);
-        } else {
-            core::hint::spin_loop();
+            thread::sleep(NAP);
         }
     }
     TAKES_PART.set(false);

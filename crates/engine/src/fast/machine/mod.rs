@@ -1,4 +1,4 @@
-//! Sets of instructions, and the choice of the widest that the machine has, at run time.
+//! Sets of instructions, and the choice of the widest that the machine has, at run time; a team of its cores.
 //!
 //! A kernel is written once, for any [`Machine`]: how eight numbers are held in registers and what one instruction does
 //! with them. It is compiled for each of [`Instructions::ALL`] that the target can have, as the [`Work`] that
@@ -6,7 +6,8 @@
 //!
 //! This is the only module with unsafe code besides the tests. What makes it sound: the types `Avx512` and `Avx2` can be
 //! named nowhere else, so that code for them is reached only through [`Instructions::run`], which has looked for the
-//! instructions before. NEON and SIMD128 are compiled only for targets that have them.
+//! instructions before. NEON and SIMD128 are compiled only for targets that have them. A [`Team`] says of itself why it is
+//! sound.
 #![allow(unsafe_code)]
 
 /// Operations on two registers, each an instruction.
@@ -33,6 +34,7 @@ mod pairs;
 mod plain;
 #[cfg(target_feature = "simd128")]
 mod simd128;
+mod team;
 
 pub(crate) use self::arithmetic::{Arithmetic, LANES, Machine, Truths};
 #[cfg(target_arch = "x86_64")]
@@ -45,6 +47,7 @@ use self::neon::Neon;
 use self::plain::Plain;
 #[cfg(target_feature = "simd128")]
 use self::simd128::Simd128;
+pub(crate) use self::team::{Apart, Team};
 
 /// Work that is compiled for each set of instructions. `run` must be `#[inline(always)]`, as must be all that it calls
 /// with the machine as a type.
