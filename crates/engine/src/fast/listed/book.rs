@@ -10,7 +10,7 @@ use super::network::{MeanForce, Rings};
 use super::pairs::Pairs;
 use super::record::Record;
 use super::spheres::Own;
-use crate::fast::lanes::{LANES, Lanes};
+use crate::fast::lanes::{LANES, Lanes, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
@@ -206,11 +206,25 @@ struct InTurn {
 impl InTurn {
     #[inline(always)]
     fn add<M: Machine>(&mut self, terms: &[Record]) {
-        for terms in terms {
-            let lane = &mut self.lanes[self.contacts % LANES];
-            *lane = (lane.quad::<M::Quads>() + terms.quad()).record();
-            self.contacts += 1;
+        // In registers, the lane of the next contact first.
+        let next = |lane: usize| (self.contacts + lane) % LANES;
+        let mut lanes = [Quad::<M>::splat(0.0); LANES];
+        for (lane, sum) in lanes.iter_mut().enumerate() {
+            *sum = self.lanes[next(lane)].quad();
         }
+        let (eights, rest) = terms.as_chunks::<LANES>();
+        for eight in eights {
+            for lane in 0..LANES {
+                lanes[lane] = lanes[lane] + eight[lane].quad();
+            }
+        }
+        for (lane, sum) in lanes.into_iter().enumerate() {
+            self.lanes[next(lane)] = match rest.get(lane) {
+                Some(terms) => (sum + terms.quad()).record(),
+                None => sum.record(),
+            };
+        }
+        self.contacts += terms.len();
     }
 
     /// The sums over the lanes, as [`Lanes::sum`] adds them.
