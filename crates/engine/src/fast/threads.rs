@@ -33,7 +33,7 @@ const PER_THREAD: usize = 2;
 
 /// Without work a thread stays awake for so long: between the parts of a step that are shared out one thread may prepare
 /// the next for some 0.1 ms.
-const PATIENCE: Duration = Duration::from_micros(200);
+const PATIENCE: Duration = Duration::from_micros(100);
 /// Then it looks again at such intervals; nobody waits for it longer.
 const NAP: Duration = Duration::from_micros(50);
 /// Awake, it looks so often for work of its team before it looks for work of rayon.

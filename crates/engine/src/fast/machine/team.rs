@@ -111,7 +111,7 @@ impl Drop for Open<'_> {
             while at_work.load(Ordering::SeqCst) > 0 {
                 looks += 1;
                 // Where there are more threads than processors, it may wait for this one.
-                match looks % 4096 {
+                match looks % 256 {
                     0 => thread::yield_now(),
                     _ => core::hint::spin_loop(),
                 }
