@@ -100,9 +100,9 @@ impl Threads {
         self.0.as_ref().map_or(1, threads)
     }
 
-    /// Which of them this one is.
-    fn index(&self) -> usize {
-        rayon::current_thread_index().unwrap_or(0) % self.number()
+    /// Which of them this one is, if any.
+    fn index(&self) -> Option<usize> {
+        self.0.as_deref()?.0.current_thread_index()
     }
 
     /// Into how many stretches a work is best cut.
@@ -163,7 +163,7 @@ impl Threads {
         let threads = self.number();
         let begun: Vec<Apart<AtomicUsize>> = (0..threads).map(|_| Apart::default()).collect();
         team.call(&|| {
-            let thread = self.index();
+            let thread = self.index().unwrap_or(0);
             for owner in (thread..threads).chain(0..thread) {
                 let Apart(begun) = &begun[owner];
                 let part = |turn: usize| {
@@ -182,7 +182,7 @@ impl Threads {
     }
 
     /// Does `work` with the legs of each chain, one after the other. Each is done by the thread to which the stretch of that
-    /// leg belongs (see [`Threads::each`]), or by this one where that does not come in time. Chains do not wait for each other.
+    /// leg belongs (see [`Threads::each`]), or by the caller where that does not come in time. Chains do not wait for each other.
     pub(crate) fn in_turn<L: Sync, const CHAINS: usize>(
         &self,
         chains: [&[L]; CHAINS],
@@ -193,7 +193,9 @@ impl Threads {
         if let Some((_, team)) = self.0.as_deref() {
             let threads = self.number();
             team.call(&|| {
-                let thread = self.index();
+                let Some(thread) = self.index() else {
+                    return;
+                };
                 for (legs, done) in chains.iter().zip(&done) {
                     let legs = legs.iter().enumerate();
                     let belongs = |leg| stretch(leg) / PER_THREAD % threads == thread;
