@@ -203,8 +203,11 @@ impl Threads {
                         if !wait_for(turn, done) {
                             return;
                         }
-                        work(leg);
-                        done.store(turn + 1, Ordering::Release);
+                        // Where two advance at once, a thread may come twice.
+                        if done.load(Ordering::Acquire) == turn {
+                            work(leg);
+                            done.store(turn + 1, Ordering::Release);
+                        }
                     }
                 }
                 // Others may wait for a leg that nobody does if this thread leaves and the call ends.

@@ -22,7 +22,7 @@ type Job<'a> = &'a (dyn Fn() + Sync);
 #[derive(Debug)]
 pub(crate) struct Team {
     call: Apart<Call>,
-    /// How many threads are at work as each member: 0 or 1.
+    /// How many threads are at work as each member.
     at_work: Box<[Apart<AtomicUsize>]>,
     led: Apart<AtomicBool>,
     panic: Mutex<Option<Box<dyn Any + Send>>>,
@@ -59,10 +59,14 @@ impl Team {
         let at = core::ptr::from_ref(&job_of_all).cast_mut().cast();
         self.call.0.job.store(at, Ordering::Relaxed);
         self.call.0.number.fetch_add(1, Ordering::SeqCst);
-        let open = Open(self);
+        let mut panic = None;
+        let open = Open {
+            team: self,
+            panic: &mut panic,
+        };
         job();
         drop(open);
-        if let Some(panic) = self.take_panic() {
+        if let Some(panic) = panic {
             resume_unwind(panic);
         }
     }
@@ -100,16 +104,20 @@ impl Team {
 }
 
 /// An open call; its end, by a panic too.
-struct Open<'a>(&'a Team);
+struct Open<'a> {
+    team: &'a Team,
+    /// That of a member.
+    panic: &'a mut Option<Box<dyn Any + Send>>,
+}
 
 impl Drop for Open<'_> {
     fn drop(&mut self) {
-        let team = self.0;
+        let team = self.team;
         team.call.0.number.fetch_add(1, Ordering::SeqCst);
         for Apart(at_work) in &team.at_work {
             let mut looks = 0_u32;
             while at_work.load(Ordering::SeqCst) > 0 {
-                looks += 1;
+                looks = looks.wrapping_add(1);
                 // Where there are more threads than processors, it may wait for this one.
                 match looks % 256 {
                     0 => thread::yield_now(),
@@ -117,9 +125,7 @@ impl Drop for Open<'_> {
                 }
             }
         }
-        if thread::panicking() {
-            drop(team.take_panic());
-        }
+        *self.panic = team.take_panic();
         team.led.0.store(false, Ordering::Release);
     }
 }
