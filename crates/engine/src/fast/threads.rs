@@ -34,7 +34,7 @@ const PER_THREAD: usize = 2;
 /// Without work a thread stays awake for so long: between the parts of a step that are shared out one thread may prepare
 /// the next for some 0.1 ms.
 const PATIENCE: Duration = Duration::from_micros(100);
-/// Then it looks again at such intervals; nobody waits for it longer.
+/// Then it looks again at such intervals; a chain of legs waits for it as long.
 const NAP: Duration = Duration::from_micros(50);
 /// Awake, it looks so often for work of its team before it looks for work of rayon.
 const LOOKS: usize = 16;
@@ -96,8 +96,8 @@ impl Threads {
     }
 
     pub(crate) fn number(&self) -> usize {
-        let threads = |of: &Arc<(ThreadPool, Team)>| of.0.current_num_threads();
-        self.0.as_ref().map_or(1, threads)
+        let pool = self.0.as_deref();
+        pool.map_or(1, |(pool, _)| pool.current_num_threads())
     }
 
     /// Which of them this one is, if any.
@@ -182,7 +182,7 @@ impl Threads {
     }
 
     /// Does `work` with the legs of each chain, one after the other. Each is done by the thread to which the stretch of that
-    /// leg belongs (see [`Threads::each`]), or by the caller where that does not come in time. Chains do not wait for each other.
+    /// leg belongs (see [`Threads::each`]), or by the caller where that does not come in time. A chain goes on before another ends.
     pub(crate) fn in_turn<L: Sync, const CHAINS: usize>(
         &self,
         chains: [&[L]; CHAINS],

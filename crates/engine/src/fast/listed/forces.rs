@@ -194,10 +194,9 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                 complete,
             }),
         });
+        let of_rings = of_rings.into_inner();
+        let of_rings = of_rings.unwrap_or_else(PoisonError::into_inner);
         let of_contacts = of_contacts.into_inner();
-        let of_rings = of_rings
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner);
         let mean_force = of_rings.mean_force;
         instructions.run(AddAll {
             of_contacts: of_contacts.unwrap_or_else(PoisonError::into_inner),

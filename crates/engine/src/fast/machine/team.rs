@@ -1,4 +1,4 @@
-//! Work for several cores at once, handed out within a microsecond to threads that wait awake.
+//! Work for several cores at once, handed out to threads that wait awake.
 //!
 //! A member says that it is at work before it looks whether the call is still open, and whoever calls closes the call before
 //! it looks who is at work. All four accesses are sequentially consistent, so one of the two sees the other: a member never
@@ -49,14 +49,14 @@ impl Team {
     /// Does `job` here, and once by each member who takes part before it is done here; returns when all are done. During a
     /// call of another thread, or of this one, it is done here alone.
     ///
-    /// A panic of any thread becomes one of the caller.
+    /// A panic of any thread becomes one of the caller. A job must not wait for work of rayon, which a caller who waits for
+    /// the job does not do.
     pub(crate) fn call(&self, job: Job<'_>) {
         if self.led.0.swap(true, Ordering::Acquire) {
             job();
             return;
         }
-        let job_of_all: Job<'_> = job;
-        let at = core::ptr::from_ref(&job_of_all).cast_mut().cast();
+        let at = core::ptr::from_ref(&job).cast_mut().cast();
         self.call.0.job.store(at, Ordering::Relaxed);
         self.call.0.number.fetch_add(1, Ordering::SeqCst);
         let mut panic = None;

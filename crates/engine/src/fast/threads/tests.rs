@@ -47,15 +47,25 @@ fn threads_that_sleep_are_waked() {
 fn work_within_work_and_by_two_at_once_is_done_too() {
     let threads = Threads::new(2).expect("threads");
     let mut inner = [(); 6].map(|()| Vec::new());
-    threads.each(&mut inner, (), &|_| 0, &|inner, ()| {
-        *inner = written(&threads, 5);
+    threads.install(|| {
+        threads.each(&mut inner, (), &|_| 0, &|inner, ()| {
+            *inner = written(&threads, 5);
+        });
     });
     assert!(inner.iter().all(|inner| *inner == expected(5)));
     thread::scope(|scope| {
         for _ in 0..3 {
             scope.spawn(|| {
                 threads.install(|| {
-                    (0..50).for_each(|_| assert_eq!(written(&threads, 9), expected(9)));
+                    let legs: Vec<usize> = (0..9).collect();
+                    for _ in 0..50 {
+                        assert_eq!(written(&threads, 9), expected(9));
+                        let done = Mutex::new(Vec::new());
+                        threads.in_turn([&legs], &|leg| *leg, &|leg| {
+                            done.lock().expect("no panic").push(*leg);
+                        });
+                        assert_eq!(done.into_inner().expect("no panic"), legs);
+                    }
                 });
             });
         }
@@ -75,7 +85,7 @@ fn a_panic_of_any_thread_comes_to_the_caller() {
     };
     assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(all_panic)).is_err());
     // They serve on.
-    assert_eq!(written(&threads, 12), expected(12));
+    assert_eq!(threads.install(|| written(&threads, 12)), expected(12));
 }
 
 #[test]
