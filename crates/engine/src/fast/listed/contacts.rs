@@ -84,9 +84,6 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
                 self.pairs.terms = terms;
             }
         }
-        if remembers {
-            self.pairs.memory.end();
-        }
     }
 }
 

@@ -11,15 +11,19 @@ use crate::fast::machine::{Machine, eight_of};
 pub(crate) type Packed = [Record; 2];
 
 /// Histories of the pairs that touched at the last evaluation, one after the other.
+///
+/// An evaluation writes each history somewhat before the place where it read it, into lines that are at hand: so it writes
+/// over none that is still to be read. When they have come to the begin of their room, they are moved to its end.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     /// Which pairs of the list they are, in order.
     touched: Vec<u32>,
-    before: Vec<Packed>,
-    /// Where the history of each contact of an evaluation is among those before; filled up to whole eights.
+    /// Room for the histories.
+    histories: Vec<Packed>,
+    /// Where the first of them is.
+    first: usize,
+    /// Where the history of each contact of an evaluation was before; filled up to whole eights.
     from: Vec<u32>,
-    /// With what history the evaluation leaves each contact; filled up likewise.
-    after: Vec<Packed>,
     /// Room: the pairs that touch.
     now: Vec<u32>,
     /// From one list to the next: the spheres of each pair.
@@ -29,19 +33,20 @@ pub(crate) struct Memory {
 impl Memory {
     pub(super) fn clear(&mut self) {
         self.touched.clear();
-        self.before.clear();
+        self.histories.clear();
+        self.first = 0;
     }
 
-    /// Remembers a pair behind all others.
+    /// Remembers a pair behind all others, before the first evaluation.
     pub(super) fn push(&mut self, pair: u32, history: Packed) {
         self.touched.push(pair);
-        self.before.push(history);
+        self.histories.push(history);
     }
 
     /// Which pairs of the list are remembered, and how.
     pub(super) fn iter(&self) -> impl Iterator<Item = (usize, &Packed)> {
         let pairs = self.touched.iter().map(|&pair| pair as usize);
-        pairs.zip(&self.before)
+        pairs.zip(&self.histories[self.first..])
     }
 
     /// Makes room for so many contacts.
@@ -50,9 +55,8 @@ impl Memory {
         for numbers in [&mut self.touched, &mut self.from, &mut self.now] {
             numbers.reserve(room.saturating_sub(numbers.len()));
         }
-        for histories in [&mut self.before, &mut self.after] {
-            histories.reserve(room.saturating_sub(histories.len()));
-        }
+        let room = (2 * room).saturating_sub(self.histories.len());
+        self.histories.reserve(room);
     }
 
     /// Writes down the spheres of the pairs.
@@ -66,20 +70,19 @@ impl Memory {
     pub(super) fn find_again(&mut self, mut pair: impl FnMut([u32; 2], &Packed) -> Option<u32>) {
         let Self {
             touched,
-            before,
-            after,
+            histories,
+            first,
             spheres,
             ..
         } = self;
         touched.clear();
-        after.clear();
-        for (&spheres, history) in spheres.iter().zip(&*before) {
-            if let Some(pair) = pair(spheres, history) {
+        for (at, &spheres) in (*first..).zip(&*spheres) {
+            let history = histories[at];
+            if let Some(pair) = pair(spheres, &history) {
+                histories[*first + touched.len()] = history;
                 touched.push(pair);
-                after.push(*history);
             }
         }
-        core::mem::swap(before, after);
     }
 
     /// Before an evaluation: finds the history of each pair that touches, and tells of those that touch no more. Pairs are
@@ -93,27 +96,33 @@ impl Memory {
     ) {
         let Self {
             touched,
-            before,
+            histories,
+            first,
             from,
-            after,
             now,
             ..
         } = self;
-        before.truncate(touched.len());
-        let fresh = touched.len() as u32;
+        let before = *first;
+        // Behind the histories stands a fresh one.
+        let fresh = before + touched.len();
+        if histories.len() <= fresh {
+            histories.resize(fresh + 1, Packed::default());
+        }
+        histories[fresh] = Packed::default();
         touched.push(u32::MAX);
         now.clear();
         from.clear();
-        let mut old = 0;
+        let (mut old, mut begun) = (0, 0);
         let mut find = |pair: u32, old: &mut usize| {
             while touched[*old] < pair {
-                ended(touched[*old] as usize, &before[*old]);
+                ended(touched[*old] as usize, &histories[before + *old]);
                 *old += 1;
             }
             let remembered = touched[*old] == pair;
-            let own = if remembered { *old as u32 } else { fresh };
+            let at = if remembered { before + *old } else { fresh };
             *old += usize::from(remembered);
-            own
+            begun += usize::from(!remembered);
+            at as u32
         };
         let (eights, rest) = touching.as_chunks::<LANES>();
         for eight in eights {
@@ -122,9 +131,9 @@ impl Memory {
             // Mostly the same eight touched before.
             from.extend(match touched[old..].first_chunk() == Some(&pairs) {
                 true => {
-                    let first = old as u32;
+                    let at = (before + old) as u32;
                     old += LANES;
-                    core::array::from_fn(|lane| first + lane as u32)
+                    core::array::from_fn(|lane| at + lane as u32)
                 }
                 false => pairs.map(|pair| find(pair, &mut old)),
             });
@@ -134,18 +143,22 @@ impl Memory {
             now.push(pair);
             from.push(find(pair, &mut old));
         }
-        for (&pair, history) in touched[old..].iter().zip(&before[old..]) {
+        for (&pair, history) in touched[old..].iter().zip(&histories[before + old..fresh]) {
             ended(pair as usize, history);
         }
-        before.push(Packed::default());
-        from.resize(from.len().next_multiple_of(LANES), fresh);
-        after.resize(from.len(), Packed::default());
+        from.resize(from.len().next_multiple_of(LANES), fresh as u32);
         core::mem::swap(touched, now);
-    }
-
-    /// After an evaluation.
-    pub(super) fn end(&mut self) {
-        core::mem::swap(&mut self.before, &mut self.after);
+        // So far ahead the eight contacts of any place end before the next history that is still to be read.
+        let ahead = begun + LANES;
+        if ahead > before {
+            let room = histories.capacity().max(ahead + fresh + 1 - before);
+            histories.resize(room, Packed::default());
+            let by = histories.len() - 1 - fresh;
+            histories.copy_within(before..=fresh, before + by);
+            from.iter_mut().for_each(|at| *at += by as u32);
+            *first += by;
+        }
+        *first -= ahead;
     }
 }
 
@@ -155,10 +168,10 @@ pub(crate) trait PackedHistory: TangentialLaw {
 
     fn unpack(packed: &[Record; 2]) -> Self::History<f64>;
 
-    /// The histories of the eight contacts from `start` on, as they were before the evaluation.
+    /// The histories of the eight contacts from `start` on, as they were before.
     fn recall<M: Machine>(memory: &Memory, start: usize) -> Self::History<Lanes<M>>;
 
-    /// Keeps the histories of the eight contacts from `start` on.
+    /// Keeps the histories of the eight contacts from `start` on, after those before them.
     fn keep<M: Machine>(history: &Self::History<Lanes<M>>, memory: &mut Memory, start: usize);
 }
 
@@ -198,7 +211,7 @@ impl PackedHistory for CundallStrack {
         let mut first = [Quad::<M>::splat(0.0); LANES];
         let mut second = first;
         let from = memory.from[start..].first_chunk().expect("whole eights");
-        let packed = eight_of(&memory.before, from);
+        let packed = eight_of(&memory.histories, from);
         for lane in 0..LANES {
             let [one, other] = packed[lane];
             first[lane] = one.quad();
@@ -219,8 +232,8 @@ impl PackedHistory for CundallStrack {
         let sliding = Lanes::select(history.sliding, Lanes::splat(1.0), Lanes::splat(0.0));
         let first = record::from_lanes(history.displacement, history.power);
         let second = record::from_lanes(history.rate, sliding);
-        let after = memory.after[start..].first_chunk_mut::<LANES>();
-        for (lane, packed) in after.expect("whole eights").iter_mut().enumerate() {
+        let eight = memory.histories[memory.first + start..].first_chunk_mut::<LANES>();
+        for (lane, packed) in eight.expect("room for eight").iter_mut().enumerate() {
             *packed = [first[lane].record(), second[lane].record()];
         }
     }
