@@ -9,7 +9,7 @@ use super::pairs::Pairs;
 use super::record::{self, Record};
 use super::spheres::{Forces, Moving, Own};
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
-use crate::fast::machine::{Machine, Work, eight_of};
+use crate::fast::machine::{Machine, Work, bring_near, eight_of};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
 
@@ -102,6 +102,9 @@ impl<N: NormalLaw, T: PackedHistory> PairForces<'_, N, T> {
     }
 }
 
+/// So many contacts before their turn, what they ask of spheres is brought near.
+const AHEAD: usize = 2 * LANES;
+
 /// Works out the contacts of the pairs that touch, and adds up forces and torques.
 #[inline(always)]
 fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
@@ -126,6 +129,19 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
         let contacts = LANES.min(pairs.contacts - start);
         let first = eight_of(&pairs.near.first, &near).map(|&place| place);
         let second = eight_of(&pairs.near.second, &near).map(|&place| place);
+        if let Some(near) = pairs.whole_eight_touching(start + AHEAD) {
+            // The first spheres follow each other, so that the processor brings them near unasked.
+            let second = eight_of(&pairs.near.second, near).map(|&place| place);
+            for records in [position, velocity, turning] {
+                bring_near(records, &second);
+            }
+            let rows = second.map(|place| outcome.at(place as usize) as u32);
+            bring_near(force, &rows);
+            if T::ROTATES {
+                bring_near(torque, &rows);
+            }
+            pairs.memory.bring_near(start + AHEAD);
+        }
         let nothing = Quad::<M>::splat(0.0);
         let (mut apart, mut relative) = ([nothing; LANES], [nothing; LANES]);
         let (mut turnings_i, mut turnings_j) = ([nothing; LANES], [nothing; LANES]);

@@ -5,7 +5,7 @@ use peristalsis_physics::real::Real;
 
 use super::record::{self, Record};
 use crate::fast::lanes::{LANES, Lanes, Quad};
-use crate::fast::machine::{Machine, eight_of};
+use crate::fast::machine::{self, Machine, eight_of};
 
 /// A history in eight numbers.
 pub(crate) type Packed = [Record; 2];
@@ -160,6 +160,14 @@ impl Memory {
         }
         *first -= ahead;
     }
+
+    /// Asks that the histories of the eight contacts from `start` on, if there are any, be brought near.
+    #[inline(always)]
+    pub(super) fn bring_near(&self, start: usize) {
+        if let Some(from) = self.from.get(start..).and_then(<[u32]>::first_chunk) {
+            machine::bring_near(&self.histories, from);
+        }
+    }
 }
 
 /// A tangential law whose histories can be packed, and turned into lanes and back.
@@ -235,6 +243,51 @@ impl PackedHistory for CundallStrack {
         let eight = memory.histories[memory.first + start..].first_chunk_mut::<LANES>();
         for (lane, packed) in eight.expect("room for eight").iter_mut().enumerate() {
             *packed = [first[lane].record(), second[lane].record()];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Each pair counts, in its history, for how many evaluations in a row it has touched.
+        #[test]
+        fn histories_follow_their_pairs_however_many_begin_and_end(
+            evaluations in prop::collection::vec(prop::collection::btree_set(0_u32..200, 0..150), 1..40),
+            room in 0_usize..150,
+        ) {
+            let numbers: Vec<u32> = (0..200).collect();
+            let mut memory = Memory::default();
+            memory.reserve(room);
+            let mut expected = BTreeMap::new();
+            for touching in evaluations {
+                let touching: Vec<u32> = touching.into_iter().collect();
+                let mut ended = BTreeMap::new();
+                memory.begin(&touching, &numbers, |pair, history| {
+                    ended.insert(pair as u32, history[0].0[0]);
+                });
+                for start in (0..touching.len()).step_by(LANES) {
+                    let from = memory.from[start..].first_chunk::<LANES>().expect("whole eights");
+                    let before = from.map(|at| memory.histories[at as usize][0].0[0]);
+                    for (lane, before) in before.into_iter().enumerate() {
+                        memory.histories[memory.first + start + lane] = [Record([before + 1.0; 4]); 2];
+                    }
+                }
+                let now: BTreeMap<u32, f64> = touching
+                    .iter()
+                    .map(|&pair| (pair, expected.remove(&pair).unwrap_or(0.0) + 1.0))
+                    .collect();
+                prop_assert_eq!(ended, expected);
+                let kept = memory.iter().map(|(pair, history)| (pair as u32, history[0].0[0]));
+                prop_assert_eq!(kept.collect::<BTreeMap<_, _>>(), now.clone());
+                expected = now;
+            }
         }
     }
 }

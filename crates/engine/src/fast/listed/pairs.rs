@@ -10,8 +10,11 @@ use super::history::{Memory, Packed, PackedHistory};
 use super::record::{self, Record};
 use super::spheres::{Own, Spheres};
 use crate::fast::lanes::{LANES, Lanes, Quad};
-use crate::fast::machine::{Machine, Work, eight_of};
+use crate::fast::machine::{Machine, Work, bring_near, eight_of};
 use crate::neighbours::Neighbours;
+
+/// So many blocks before their turn, the places of spheres are brought near.
+const AHEAD: usize = 4;
 
 /// Pairs one after the other, filled up to whole blocks with pairs that never touch.
 #[derive(Clone, Debug, Default)]
@@ -63,11 +66,13 @@ impl Flat {
         }
         let mut end = 0;
         let (skin, whole) = (Lanes::splat(skin), Lanes::splat(length));
+        let seconds = self.second.as_chunks::<LANES>().0;
         let blocks = self.first.as_chunks::<LANES>().0.iter();
-        let blocks = blocks
-            .zip(self.second.as_chunks::<LANES>().0)
-            .zip(self.reach.as_chunks::<LANES>().0);
+        let blocks = blocks.zip(seconds).zip(self.reach.as_chunks::<LANES>().0);
         for (block, ((first, second), reach)) in blocks.enumerate() {
+            if let Some(ahead) = seconds.get(block + AHEAD) {
+                bring_near(position, ahead);
+            }
             let (i, j) = (eight_of(position, first), eight_of(position, second));
             let mut apart = [Quad::<M>::splat(0.0); LANES];
             for lane in 0..LANES {
@@ -242,6 +247,12 @@ impl Pairs {
             Some(eight) => *eight,
             None => core::array::from_fn(|lane| touching[lane.min(touching.len() - 1)]),
         }
+    }
+
+    /// The same, where there are eight contacts from `start` on.
+    #[inline(always)]
+    pub(super) fn whole_eight_touching(&self, start: usize) -> Option<&[u32; LANES]> {
+        self.touching[..self.contacts].get(start..)?.first_chunk()
     }
 
     /// Finds the histories of the pairs that touch, and ends those of the pairs that touch no more.
