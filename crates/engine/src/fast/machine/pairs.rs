@@ -4,7 +4,6 @@ use core::fmt::Debug;
 use core::ops::{BitAnd, BitOr, Not};
 
 use super::arithmetic::{Arithmetic, LANES, Machine, Truths};
-use super::plain::Plain;
 
 /// Two numbers in one register, and the instructions for them.
 pub(crate) trait Pair: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
