@@ -151,7 +151,8 @@ impl Memory {
         // So far ahead the eight contacts of any place end before the next history that is still to be read.
         let ahead = begun + LANES;
         if ahead > before {
-            let room = histories.capacity().max(ahead + fresh + 1 - before);
+            let remembered = fresh - before;
+            let room = histories.len().max(ahead + remembered + remembered / 4 + 1);
             histories.resize(room, Packed::default());
             let by = histories.len() - 1 - fresh;
             histories.copy_within(before..=fresh, before + by);
