@@ -13,7 +13,7 @@ pub(crate) type Packed = [Record; 2];
 /// Histories of the pairs that touched at the last evaluation, one after the other.
 ///
 /// An evaluation writes each history somewhat before the place where it read it, into lines that are at hand: so it writes
-/// over none that is still to be read. When they have come to the begin of their room, they are moved to its end.
+/// over none that is still to be read. When they have come to the start of their room, they are moved to its end.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     /// Which pairs of the list they are, in order.
@@ -148,7 +148,8 @@ impl Memory {
         }
         from.resize(from.len().next_multiple_of(LANES), fresh as u32);
         core::mem::swap(touched, now);
-        // So far ahead the eight contacts of any place end before the next history that is still to be read.
+        // Of the contacts worked out so far all but `begun` at most have read a history. Written so far ahead, they and the
+        // eight that are written at once end before the next history to be read.
         let ahead = begun + LANES;
         if ahead > before {
             let remembered = fresh - before;

@@ -242,10 +242,11 @@ impl Pairs {
     /// The near pairs of the contacts from `start` on; of the last eight, those to spare are the last once more.
     #[inline(always)]
     pub(super) fn eight_touching(&self, start: usize) -> [u32; LANES] {
-        let touching = &self.touching[start..self.contacts];
-        match touching.first_chunk() {
+        match self.whole_eight_touching(start) {
             Some(eight) => *eight,
-            None => core::array::from_fn(|lane| touching[lane.min(touching.len() - 1)]),
+            None => {
+                core::array::from_fn(|lane| self.touching[(start + lane).min(self.contacts - 1)])
+            }
         }
     }
 
