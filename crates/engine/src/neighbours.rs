@@ -17,9 +17,6 @@ use self::rows::{Collecting, Rows};
 use crate::fast::machine::Instructions;
 use crate::fast::threads::Threads;
 
-/// Pairs of [`Late`] spheres are seldom near, so the search for them goes farther than the skin \[d\] and serves several lists.
-const FARTHER: f64 = 1.0;
-
 /// Rows of partners with a history of type `H` beside each pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<H> {
@@ -32,26 +29,12 @@ pub(crate) struct Neighbours<H> {
     origin: Vec<DVec3>,
     /// Skin with which it was made.
     skin: f64,
-    late: Late,
-    cells: Cells,
-    late_cells: Cells,
-    pieces: Vec<Piece>,
+    /// The spheres whose pairs all are admitted, and the others: their cells, and what is found for them.
+    cells: [Cells; 2],
+    found: [Vec<Piece>; 2],
     collecting: Collecting,
     /// Histories (i, j, history) on their way from one list to the next.
     carried: Vec<(u32, u32, H)>,
-}
-
-/// The last spheres, of whose pairs with each other not all are admitted (those of an elastic wall), as they were when these
-/// pairs were searched for.
-#[derive(Clone, Debug, Default)]
-struct Late {
-    /// Number of the first.
-    first: usize,
-    /// Their unfolded positions.
-    origin: Vec<DVec3>,
-    /// Skin of the search.
-    skin: f64,
-    found: Vec<Piece>,
 }
 
 impl<H: Copy + Default + PartialEq> Neighbours<H> {
@@ -66,10 +49,8 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             history: Vec::new(),
             origin: Vec::new(),
             skin: 0.0,
-            late: Late::default(),
-            cells: Cells::default(),
-            late_cells: Cells::default(),
-            pieces: Vec::new(),
+            cells: Default::default(),
+            found: Default::default(),
             collecting: Collecting::default(),
             carried: Vec::new(),
         }
@@ -205,9 +186,9 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         self.carried = carried;
     }
 
-    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, and perhaps some farther ones, in a time
-    /// that grows linearly with the number of spheres. All histories must be fresh, and none is looked at before
-    /// [`Neighbours::carry_on`] or [`Neighbours::histories_mut`].
+    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, in a time that grows linearly with
+    /// the number of spheres. All histories must be fresh, and none is looked at before [`Neighbours::carry_on`] or
+    /// [`Neighbours::histories_mut`].
     pub(crate) fn rebuild<F: Fn(usize, usize) -> bool + Sync>(
         &mut self,
         position: &[DVec3],
@@ -217,98 +198,53 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     ) where
         H: Sync,
     {
-        let unfolded = position.iter().zip(turns);
-        let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * rule.length));
-        self.search_late(position, unfolded.clone(), rule, threads);
-        let grid = Grid::of(position, rule, rule.skin);
+        let grid = Grid::of(position, rule);
         let early = rule.admits_all_below.min(position.len());
-        let (cells, late_cells) = (&mut self.cells, &mut self.late_cells);
-        let mut sorts = [(cells, 0..early), (late_cells, early..position.len())];
+        let Self { cells, found, .. } = self;
+        let [early_cells, late_cells] = &mut *cells;
+        let mut sorts = [(early_cells, 0..early), (late_cells, early..position.len())];
         threads.each(&mut sorts, (), &|_| 0, &|(cells, numbers), ()| {
             cells.sort(grid, position, rule.diameter, numbers.clone());
         });
-        let among = [&self.cells, &self.late_cells];
-        search(
-            &mut self.pieces,
-            &self.cells,
-            &among,
-            rule.skin,
-            rule.length,
-            threads,
-        );
-        let found = [&self.pieces[..], &self.late.found];
+        // The partners of a sphere have larger numbers.
+        for (first, found) in found.iter_mut().enumerate() {
+            search(found, &cells[first..], rule, threads);
+        }
+        threads.each(&mut found[1], (), &|_| 0, &|piece, ()| {
+            piece.found.retain(&rule.admits);
+        });
+        let found = [&found[0][..], &found[1]];
         self.next
             .collect(position.len(), found, &mut self.collecting, threads);
         self.skin = rule.skin;
         self.origin.clear();
+        let unfolded = position.iter().zip(turns);
+        let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * rule.length));
         self.origin.extend(unfolded);
         core::mem::swap(&mut self.rows, &mut self.next);
         debug_assert_eq!(self.rows(), position.len());
     }
-
-    /// Searches for the pairs of late spheres, unless what was found before holds all that are wanted.
-    fn search_late<F: Fn(usize, usize) -> bool + Sync>(
-        &mut self,
-        position: &[DVec3],
-        unfolded: impl Iterator<Item = DVec3> + Clone,
-        rule: &PairRule<'_, F>,
-        threads: &Threads,
-    ) {
-        let first = rule.admits_all_below.min(position.len());
-        let late = &mut self.late;
-        let unfolded = unfolded.skip(first);
-        let same = late.first == first && late.origin.len() == position.len() - first;
-        let drift = Drift::between(unfolded.clone().zip(&late.origin));
-        if same && drift.approach() + rule.skin <= late.skin {
-            return;
-        }
-        late.first = first;
-        late.skin = rule.skin + FARTHER;
-        late.origin.clear();
-        late.origin.extend(unfolded);
-        if late.origin.is_empty() {
-            late.found.clear();
-            return;
-        }
-        let grid = Grid::of(position, rule, late.skin);
-        let cells = &mut self.late_cells;
-        cells.sort(grid, position, rule.diameter, first..position.len());
-        let cells = &*cells;
-        search(
-            &mut late.found,
-            cells,
-            &[cells],
-            late.skin,
-            rule.length,
-            threads,
-        );
-        threads.each(&mut late.found, (), &|_| 0, &|piece, ()| {
-            piece.found.retain(&rule.admits);
-        });
-    }
 }
 
-/// Searches all cells for partners; the pieces of the answer are as many as serve the threads.
-fn search(
+/// Searches for the partners of the spheres in the first of these cells, among all; the pieces of the answer are as many as
+/// serve the threads.
+fn search<F: Fn(usize, usize) -> bool + Sync>(
     pieces: &mut Vec<Piece>,
-    of: &Cells,
-    among: &[&Cells],
-    skin: f64,
-    length: f64,
+    cells: &[Cells],
+    rule: &PairRule<'_, F>,
     threads: &Threads,
 ) {
     let number = threads.stretches();
-    let begin = |piece: usize| piece * of.number() / number;
+    let begin = |piece: usize| piece * cells[0].number() / number;
     pieces.resize_with(number, Piece::default);
     for (number, piece) in pieces.iter_mut().enumerate() {
         piece.cells = begin(number)..begin(number + 1);
     }
     threads.each(pieces, (), &|_| 0, &|piece, ()| {
         Instructions::widest().run(Search {
-            of,
-            among,
-            skin,
-            length,
+            cells,
+            skin: rule.skin,
+            length: rule.length,
             piece,
         });
     });

@@ -71,16 +71,15 @@ impl Grid {
         beside.into_iter().flatten()
     }
 
-    /// Cells at least as wide as the farthest pair of a rule with this skin.
+    /// Cells at least as wide as the farthest pair of a rule.
     pub(super) fn of<F: Fn(usize, usize) -> bool>(
         position: &[DVec3],
         rule: &PairRule<'_, F>,
-        skin: f64,
     ) -> Self {
         // Comparisons, since `f64::max` looks for NaN as well.
         let larger = |a: f64, b: f64| if b > a { b } else { a };
         let largest_diameter = rule.diameter.iter().copied().fold(0.0, larger);
-        let cutoff = largest_diameter + skin;
+        let cutoff = largest_diameter + rule.skin;
         // Spheres that fly away must not stretch the grid without bound.
         let farthest = position
             .iter()
@@ -278,10 +277,8 @@ impl Cells {
 
 /// The search, in some cells, for partners: pairs i < j nearer than (d_i + d_j)/2 + skin.
 pub(super) struct Search<'a> {
-    /// The spheres i.
-    pub(super) of: &'a Cells,
-    /// The spheres j, in the same grid.
-    pub(super) among: &'a [&'a Cells],
+    /// In one grid: the spheres i, and all that may be spheres j.
+    pub(super) cells: &'a [Cells],
     pub(super) skin: f64,
     /// Period of the tube \[d\].
     pub(super) length: f64,
@@ -294,8 +291,7 @@ impl Work for Search<'_> {
     #[inline(always)]
     fn run<M: Machine>(self) {
         let Self {
-            of,
-            among,
+            cells,
             skin,
             length,
             piece,
@@ -306,6 +302,7 @@ impl Work for Search<'_> {
             around,
         } = piece;
         ends.clear();
+        let of = &cells[0];
         let whole = Lanes::<M>::splat(length);
         let mut end = 0;
         for cell in these.clone() {
@@ -314,7 +311,7 @@ impl Work for Search<'_> {
                 continue;
             }
             let mut number = 0;
-            for cells in among {
+            for cells in cells {
                 number = cells.gather::<M>(cell, around, number);
             }
             // Behind the last no number is larger.
