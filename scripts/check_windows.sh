@@ -49,7 +49,7 @@ run=(run --quiet --preset frictionless --set run.periods=6 --csv --out)
 for file in timeseries.csv profile.parquet waves.parquet; do cmp "linux/$file" "windows/$file"; done
 
 step "killed, and gone on with: the same bytes"
-longer=(run --quiet --preset frictionless --set run.periods=60 --csv --checkpoint-every 1s --out)
+longer=(run --quiet --preset frictionless --set run.periods=600 --csv --checkpoint-every 1s --out)
 "$linux" "${longer[@]}" long
 "${windows[@]}" "${longer[@]}" killed &
 process=$!

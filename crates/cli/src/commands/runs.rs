@@ -7,7 +7,7 @@ use peristalsis_configuration::{Configuration, Control};
 use peristalsis_run::RunFolder;
 use serde_json::{Value, json};
 
-use super::run::{RUNS, known};
+use super::run::{RUNS, measured};
 use crate::arguments::RunsArguments;
 use crate::commands::{print, print_json};
 use crate::failure::Failure;
@@ -192,11 +192,7 @@ fn row(run: &Value) -> [String; 9] {
     let number = |key: &str| run[key].as_f64();
     let plain = |key: &str| number(key).map_or("–".to_owned(), |it| it.to_string());
     let error = number("flow_rate_ratio_error").unwrap_or(f64::NAN);
-    let flow =
-        number("flow_rate_ratio").map_or("–".to_owned(), |ratio| match known((ratio, error)) {
-            (ratio, Some(error)) => format!("{ratio:.4} ± {error:.4}"),
-            (ratio, None) => format!("{ratio:.4}"),
-        });
+    let flow = number("flow_rate_ratio").map_or("–".to_owned(), |ratio| measured((ratio, error)));
     let done = |done: &str, asked: &str, unit: &str| {
         let done = number(done).map_or("–".to_owned(), |it| {
             let thousandths = (1e3 * it).round() / 1e3;

@@ -22,7 +22,7 @@ use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
 use crate::stop::Stop;
 
-pub(crate) use self::words::known;
+pub(crate) use self::words::measured;
 use self::words::{how_far, in_words};
 use self::work::{Ending, Work};
 

@@ -7,15 +7,16 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use peristalsis_analysis::mean_and_error;
+use peristalsis_analysis::number::known_error;
 use peristalsis_engine::processors;
 use peristalsis_run::{RunError, RunFolder, Status, Summary, Warning, next_folder, warnings};
 use serde_json::{Value, json};
 
-use super::words::known;
+use super::words::measured;
 use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
-use crate::commands::{code_of, counted, print, print_json, tell, unsigned_zero, warn_besides};
+use crate::commands::{code_of, counted, print, print_json, significant, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, name};
@@ -210,10 +211,12 @@ fn asks_for_files(arguments: &RunArguments) -> bool {
 /// The result of a replica, in a line.
 fn line(seed: u64, outcome: &Outcome) -> String {
     let summary = &outcome.summary;
-    let flow = match known(summary.flow_rate_ratio) {
-        (ratio, Some(error)) => format!("J/Jmax = {ratio:.4} ± {error:.4} within this run"),
-        (ratio, None) if ratio.is_finite() => format!("J/Jmax = {ratio:.4}"),
-        _ => "no J/Jmax".to_owned(),
+    let (ratio, error) = summary.flow_rate_ratio;
+    let said = measured(summary.flow_rate_ratio);
+    let flow = match known_error(ratio, error) {
+        Some(_) => format!("J/Jmax = {said} within this run"),
+        None if ratio.is_finite() => format!("J/Jmax = {said}"),
+        None => "no J/Jmax".to_owned(),
     };
     let transition = match summary.transition_time {
         Some(time) => format!("transition at t = {time:.1}"),
@@ -292,10 +295,10 @@ fn conclude(
             .filter_map(|(seed, _, outcome)| Some(line(*seed, outcome.as_ref().ok()?)));
         let mut text: String = lines.map(|line| line + "\n").collect();
         if let Some(flow) = &flow {
-            text += &format!("J/Jmax = {}\n", flow.in_words(4));
+            text += &format!("J/Jmax = {}\n", flow.in_words());
         }
         match (&transition, complete.len()) {
-            (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words(1)),
+            (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words()),
             (None, 0) => {}
             (None, number) => {
                 let runs = counted(number, "run");
@@ -359,15 +362,15 @@ impl Scatter {
         Some(self.error? * (self.number as f64).sqrt())
     }
 
-    fn in_words(&self, decimals: usize) -> String {
-        let places = i32::try_from(decimals).unwrap_or(0);
-        let (mean, number) = (unsigned_zero(self.mean, places), self.number);
-        let Some((error, deviation)) = self.error.zip(self.deviation()) else {
-            return format!("{mean:.decimals$}, of one seed: no scatter is known");
+    fn in_words(&self) -> String {
+        let mean = measured((self.mean, self.error.unwrap_or(f64::NAN)));
+        let Some(deviation) = self.deviation() else {
+            return format!("{mean}, of one seed: no scatter is known");
         };
         format!(
-            "{mean:.decimals$} ± {error:.decimals$}, mean of {number} seeds and its standard error; scatter between \
-             seeds {deviation:.decimals$} (standard deviation)"
+            "{mean}, mean of {} seeds and its standard error; scatter between seeds {} (standard deviation)",
+            self.number,
+            significant(deviation, 2)
         )
     }
 

@@ -5,7 +5,7 @@ use peristalsis_configuration::Units;
 use peristalsis_reproduce::report::plain_text;
 use peristalsis_run::{Discharge, Pumping, Run, Summary};
 
-use crate::commands::{counted, significant, unsigned_zero};
+use crate::commands::{counted, significant};
 use crate::progress::seconds;
 
 /// How far a run came: in periods, or in time where the wave stands still.
@@ -36,16 +36,14 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         ),
     };
     let late = 100.0 * configuration.observe.late_fraction;
-    let mut flow = match known(summary.flow_rate_ratio) {
-        (ratio, Some(error)) => {
-            format!(
-                "J/Jmax = {ratio:.4} ± {error:.4} within this run, mean of its last {late:.0} %"
-            )
+    let (ratio, error) = summary.flow_rate_ratio;
+    let said = measured(summary.flow_rate_ratio);
+    let mut flow = match known_error(ratio, error) {
+        Some(_) => format!("J/Jmax = {said} within this run, mean of its last {late:.0} %"),
+        None if ratio.is_finite() => {
+            format!("J/Jmax = {said}, mean of its last {late:.0} % (too short for an error)")
         }
-        (ratio, _) if ratio.is_finite() => {
-            format!("J/Jmax = {ratio:.4}, mean of its last {late:.0} % (too short for an error)")
-        }
-        _ => format!(
+        None => format!(
             "J = {}, mean of its last {late:.0} %; no J/Jmax without grains inside and a moving wave",
             significant(summary.flow_rate() + 0.0, 4)
         ),
@@ -54,7 +52,8 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         // The load of a fluid counts against its viscosity, which grains do not have.
         let is_loaded = summary.pumping.is_some();
         let load = if is_loaded { " without load" } else { "" };
-        flow.push_str(&format!(" (a Newtonian fluid{load}: {newtonian:.4})"));
+        let newtonian = measured((newtonian, f64::NAN));
+        flow.push_str(&format!(" (a Newtonian fluid{load}: {newtonian})"));
     }
     // Weight that carries grains through an open tube is no load.
     let falls = |pumping: &&Pumping| summary.discharge.is_some() && pumping.pressure_rise <= 0.0;
@@ -142,9 +141,9 @@ fn wear(summary: &Summary) -> String {
     format!("\nwear: sliding on the wall takes {power}, {per_area} of wall")
 }
 
-/// A number with its error.
-fn measured((value, error): (f64, f64)) -> String {
-    plain_text(&with_error(value, error))
+/// A number with its error, if one is known; with the minus of a keyboard, as all numbers in a terminal.
+pub(crate) fn measured((value, error): (f64, f64)) -> String {
+    plain_text(&with_error(value + 0.0, error)).replace('−', "-")
 }
 
 /// The same in SI, or else in the units of the run.
@@ -237,11 +236,6 @@ fn through(discharge: &Discharge, summary: &Summary) -> String {
     text
 }
 
-/// A number as it reads with four decimals, with its error, if one is known.
-pub(crate) fn known((value, error): (f64, f64)) -> (f64, Option<f64>) {
-    (unsigned_zero(value, 4), known_error(value, error))
-}
-
 /// Periods to a tenth, fewer than one to two digits.
 fn tenths(periods: f64) -> String {
     match periods.abs() < 1.0 && periods != 0.0 {
@@ -252,7 +246,7 @@ fn tenths(periods: f64) -> String {
 
 /// The efficiency, or why there is none.
 fn efficiency(pumping: &Pumping) -> String {
-    let (efficiency, error) = pumping.efficiency;
+    let (efficiency, _) = pumping.efficiency;
     if efficiency.is_nan() {
         let reason = match pumping.useful_power.0 > 0.0 {
             true => "the wall gives no power: stored energy is spent",
@@ -260,10 +254,7 @@ fn efficiency(pumping: &Pumping) -> String {
         };
         return format!("efficiency – ({reason})");
     }
-    let mut text = format!("efficiency {efficiency:.4}");
-    if error.is_finite() {
-        text.push_str(&format!(" ± {error:.4}"));
-    }
+    let mut text = format!("efficiency {}", measured(pumping.efficiency));
     if efficiency > 1.0 {
         text.push_str(" (above 1: stored energy is spent; run longer)");
     }
@@ -283,7 +274,7 @@ mod tests {
                 efficiency: (efficiency, 0.01),
             })
         };
-        assert_eq!(said(1.0, 0.25), "efficiency 0.2500 ± 0.0100");
+        assert_eq!(said(1.0, 0.25), "efficiency 0.250 ± 0.010");
         assert!(said(1.0, 1.5).contains("stored energy is spent; run longer"));
         assert!(said(1.0, f64::NAN).starts_with("efficiency – (the wall"));
         assert!(said(-1.0, f64::NAN).starts_with("efficiency – (the grains"));
