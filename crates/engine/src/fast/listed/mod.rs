@@ -57,7 +57,7 @@ const LISTED: f64 = 2.5;
 const CHOSEN: f64 = 0.5;
 /// The list is made for where the spheres will be after so much of the time that it serves at least: it then serves on
 /// both sides of that, longer than one made for where they are.
-const AHEAD: f64 = 0.7;
+const LISTED_AHEAD: f64 = 0.7;
 
 /// Advances by `steps` steps in place of the reference kernel.
 pub(crate) fn advance<N: NormalLaw, T: PackedHistory>(
@@ -413,7 +413,8 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             self.beside_wall = scratch.take_up(reference, wall);
             return;
         }
-        let time = AHEAD * scratch.time_within((LISTED - CHOSEN) * reference.parameters.skin);
+        let time =
+            LISTED_AHEAD * scratch.time_within((LISTED - CHOSEN) * reference.parameters.skin);
         let spheres = &scratch.spheres;
         spheres.store_places_ahead(bodies, time, reference.length);
         scratch.note_pairs();

@@ -11,6 +11,7 @@
 #![allow(unsafe_code)]
 
 /// Operations on two registers, each an instruction.
+#[cfg(not(all(target_family = "wasm", not(target_feature = "simd128"))))]
 macro_rules! operations {
     ($arguments:ty => $answer:ty: $($operation:ident $instruction:expr),+ $(,)?) => {$(
         #[inline(always)]
