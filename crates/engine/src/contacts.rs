@@ -54,6 +54,12 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
         Ok(())
     }
 
+    /// Whether the neighbour list holds all pairs that may have a contact as the spheres are now.
+    pub(crate) fn are_listed(&self, bodies: &Bodies, wall: &Wall) -> bool {
+        let (position, turns) = (&bodies.position, &bodies.turns);
+        self.pairs.holds(position, turns, wall.length(), self.range)
+    }
+
     /// Makes the neighbour list anew where it no longer holds.
     pub(crate) fn refresh(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
         let length = wall.length();

@@ -100,13 +100,16 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         &mut self.history
     }
 
+    /// The partners of sphere i with larger numbers, each with its history.
+    pub(crate) fn pairs_of(&self, i: usize) -> impl Iterator<Item = (&u32, &H)> {
+        let histories = &self.history[self.rows.range(i)];
+        self.partners(i).iter().zip(histories)
+    }
+
     /// All pairs with their histories, in order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
         (0..self.rows()).flat_map(move |i| {
-            let row = self
-                .partners(i)
-                .iter()
-                .zip(&self.history[self.rows.range(i)]);
+            let row = self.pairs_of(i);
             row.map(move |(&j, history)| (i as u32, j, history))
         })
     }
@@ -139,6 +142,11 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * length));
         self.origin.len() != position.len()
             || Drift::between(unfolded.zip(&self.origin)).approach() > skin
+    }
+
+    /// Whether the list holds all admitted pairs that are now closer than (d_i + d_j)/2 + `skin`.
+    pub(crate) fn holds(&self, position: &[DVec3], turns: &[i32], length: f64, skin: f64) -> bool {
+        !self.outdated(position, turns, length, self.skin - skin)
     }
 
     /// Whether the list holds all admitted pairs of so many spheres that are now closer than (d_i + d_j)/2 + `skin`;

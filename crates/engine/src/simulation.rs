@@ -398,11 +398,9 @@ impl Simulation {
 
     /// All contacts as they are now, with their forces; grain by grain.
     pub fn touching(&self) -> Vec<Touching> {
-        // Histories of contacts with the wall are taken out on the way.
-        let mut memory = self.memory.clone();
         let normal = self.parameters().contact.normal;
         let (bodies, wall) = (self.bodies(), self.wall());
-        with_contact_law!(normal, &mut memory, |law, contacts| touching(
+        with_contact_law!(normal, &self.memory, |law, contacts| touching(
             law, bodies, wall, contacts
         ))
     }

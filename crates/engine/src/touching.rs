@@ -37,19 +37,23 @@ pub struct Touching {
 /// All contacts at the present positions and velocities, in order of the first sphere; those of a grain with other moving
 /// spheres before those with a prescribed wall.
 ///
-/// No history moves on, but the histories of contacts with the wall are taken out of `contacts`.
+/// No history moves on.
 pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,
     wall: &Wall,
-    contacts: &mut Contacts<T::History<f64>>,
+    contacts: &Contacts<T::History<f64>>,
 ) -> Vec<Touching> {
-    contacts.rebuild(bodies, wall, 0.0, &Threads::default());
+    let mut listed_anew = None;
+    if !contacts.are_listed(bodies, wall) {
+        let contacts = listed_anew.insert(contacts.clone());
+        contacts.rebuild(bodies, wall, 0.0, &Threads::default());
+    }
+    let contacts = listed_anew.as_ref().unwrap_or(contacts);
     let mut found = Vec::new();
     for first in 0..bodies.number() {
         let here = bodies.sphere(first);
-        let (partners, histories) = contacts.pairs.row(first);
-        for (&partner, history) in partners.iter().zip(histories) {
+        for (&partner, history) in contacts.pairs.pairs_of(first) {
             let second = partner as usize;
             let there = bodies.sphere(second);
             let separation = periodic(here.position - there.position, wall.length());
@@ -66,7 +70,7 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
             continue;
         }
         wall.for_each_contact(&here, law.range(here.diameter), |sphere, contact, _| {
-            let history = contacts.wall.take(first, sphere);
+            let history = contacts.wall.history(first, sphere);
             let second = bodies.grains + sphere as usize;
             found.extend(answered(
                 law,
