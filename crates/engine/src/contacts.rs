@@ -1,13 +1,14 @@
 //! The contacts of a simulation: listed pairs, and the histories that their law needs.
 
 use peristalsis_physics::contact::{
-    ContactLaw, ContactModel, CundallStrack, General, GeneralHistory, TangentialHistory,
+    Contact, ContactLaw, ContactModel, CundallStrack, General, GeneralHistory, NormalLaw,
+    TangentialHistory, TangentialLaw,
 };
 
 use crate::bodies::Bodies;
 use crate::error::EngineError;
 use crate::fast::threads::Threads;
-use crate::neighbours::{Neighbours, PairRule};
+use crate::neighbours::{Neighbours, PairRule, periodic};
 use crate::snapshot::Remembered;
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
@@ -97,6 +98,41 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
         };
         self.pairs
             .rebuild(&bodies.position, &bodies.turns, &rule, threads);
+    }
+}
+
+/// A squared distance beyond reach by more than this part of it is so whatever the rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl<H> Contacts<H> {
+    /// Calls `visit` for each listed pair i < j of sphere i whose contact acts, and which `is_wanted`: j, the contact, and
+    /// its history.
+    pub(crate) fn for_each_acting<N: NormalLaw, T: TangentialLaw<History<f64> = H>>(
+        &self,
+        law: &ContactLaw<N, T>,
+        bodies: &Bodies,
+        length: f64,
+        i: usize,
+        is_wanted: impl Fn(usize) -> bool,
+        mut visit: impl FnMut(usize, &Contact, &H),
+    ) where
+        H: Copy + Default + PartialEq,
+    {
+        let here = bodies.sphere(i);
+        for (&j, history) in self.pairs.pairs_of(i) {
+            let j = j as usize;
+            let separation = periodic(here.position - bodies.position[j], length);
+            let reach = 0.5 * (here.diameter + bodies.diameter[j]) + self.range;
+            // Most are out of reach.
+            let is_far = separation.length_squared() > (1.0 + ROUNDING) * (reach * reach);
+            if is_far || !is_wanted(j) {
+                continue;
+            }
+            let contact = here.contact(&bodies.sphere(j), separation);
+            if law.acts(&contact, history) {
+                visit(j, &contact, history);
+            }
+        }
     }
 }
 

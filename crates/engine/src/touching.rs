@@ -6,7 +6,6 @@ use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::fast::threads::Threads;
-use crate::neighbours::periodic;
 use crate::wall::Wall;
 
 /// Two spheres that touch.
@@ -53,19 +52,21 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     let mut found = Vec::new();
     for first in 0..bodies.number() {
         let here = bodies.sphere(first);
-        for (&partner, history) in contacts.pairs.pairs_of(first) {
-            let second = partner as usize;
-            let there = bodies.sphere(second);
-            let separation = periodic(here.position - there.position, wall.length());
-            let contact = here.contact(&there, separation);
-            // Wall against wall has no friction.
-            if first >= bodies.grains {
-                let law = &law.frictionless();
-                found.extend(answered(law, &contact, (), first, second));
-            } else {
-                found.extend(answered(law, &contact, *history, first, second));
-            }
-        }
+        let length = wall.length();
+        contacts.for_each_acting(
+            law,
+            bodies,
+            length,
+            first,
+            |_| true,
+            |second, contact, history| {
+                // Wall against wall has no friction.
+                found.extend(match first < bodies.grains {
+                    true => answered(law, contact, *history, first, second),
+                    false => answered(&law.frictionless(), contact, (), first, second),
+                });
+            },
+        );
         if first >= bodies.grains {
             continue;
         }

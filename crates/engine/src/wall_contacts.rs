@@ -9,7 +9,6 @@ use rayon::prelude::*;
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::fast::threads::Threads;
-use crate::neighbours::periodic;
 use crate::wall::Wall;
 
 /// A contact of a grain with a sphere of the wall; forces are those on the grain \[m d/t^2\].
@@ -60,16 +59,20 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     if wall.mobile_spheres() == 0 {
         return;
     }
-    for (i, j, history) in contacts.pairs.iter() {
-        let (i, j) = (i as usize, j as usize);
-        if i < bodies.grains && j >= bodies.grains {
-            let separation = periodic(bodies.position[i] - bodies.position[j], wall.length());
-            let contact = bodies.sphere(i).contact(&bodies.sphere(j), separation);
-            if law.acts(&contact, history) {
+    let grains = bodies.grains;
+    for i in 0..grains {
+        let with_wall = |j| j >= grains;
+        contacts.for_each_acting(
+            law,
+            bodies,
+            wall.length(),
+            i,
+            with_wall,
+            |j, contact, history| {
                 let acceleration = bodies.acceleration[i] - bodies.acceleration[j];
-                answer(i, acceleration, &contact, *history);
-            }
-        }
+                answer(i, acceleration, contact, *history);
+            },
+        );
     }
 }
 

@@ -113,9 +113,10 @@ impl Scratch {
         let (bodies, list) = (&*reference.bodies, &reference.contacts.pairs);
         shares.share_out(bodies, list, wall, threads, &mut spheres.number);
         spheres.load(bodies, reference.past);
-        for section in &mut shares.sections {
-            section.forces.load(section.own, bodies, &spheres.number);
-        }
+        let number = &spheres.number[..];
+        threads.each(&mut shares.sections, (), &|_| 0, &|section, ()| {
+            section.forces.load(section.own, bodies, number);
+        });
     }
 
     /// Takes up spheres and contacts of the reference kernel, whose histories are fresh then; answers the sections' contacts
@@ -129,9 +130,10 @@ impl Scratch {
         let beside_wall = self.beside_wall(reference, wall);
         self.load_pairs(reference);
         let list = &mut reference.contacts.pairs;
-        for [of_grains, _] in &mut self.shares.pairs {
-            of_grains.take_up::<T>(list.histories());
-        }
+        let (pairs, histories) = (&mut self.shares.pairs[..], list.histories());
+        self.threads.each(pairs, (), &|_| 0, &|[of_grains, _], ()| {
+            of_grains.take_up::<T>(histories);
+        });
         for [of_grains, _] in &self.shares.pairs {
             of_grains.freshen(list.histories_mut());
         }
