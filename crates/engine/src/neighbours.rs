@@ -258,6 +258,12 @@ fn search<F: Fn(usize, usize) -> bool + Sync>(
     });
 }
 
+/// The larger of two numbers, where [`f64::max`] would look for NaN as well.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
 /// Bounds of displacements.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Drift {
@@ -288,9 +294,9 @@ impl Drift {
     pub(crate) fn of(displacements: impl Iterator<Item = DVec3>) -> Self {
         let mut drift = Self::NONE;
         for by in displacements {
-            drift.lateral_squared = drift.lateral_squared.max(by.x * by.x + by.y * by.y);
-            drift.least = drift.least.min(by.z);
-            drift.largest = drift.largest.max(by.z);
+            drift.lateral_squared = larger(drift.lateral_squared, by.x * by.x + by.y * by.y);
+            drift.least = -larger(-drift.least, -by.z);
+            drift.largest = larger(drift.largest, by.z);
         }
         drift
     }

@@ -6,6 +6,7 @@ use core::slice;
 use glam::DVec3;
 use peristalsis_physics::real::Real;
 
+use super::larger;
 use super::rows::Found;
 use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
@@ -76,8 +77,6 @@ impl Grid {
         position: &[DVec3],
         rule: &PairRule<'_, F>,
     ) -> Self {
-        // Comparisons, since `f64::max` looks for NaN as well.
-        let larger = |a: f64, b: f64| if b > a { b } else { a };
         let largest_diameter = rule.diameter.iter().copied().fold(0.0, larger);
         let cutoff = largest_diameter + rule.skin;
         // Spheres that fly away must not stretch the grid without bound.
