@@ -24,7 +24,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let request = request(&arguments.frames);
     let estimate = with_words(&words, || estimate(&configuration, request.as_ref()))
         .map_err(|error| locate(error, &arguments.configuration))?;
-    print_report(arguments.json, &estimate, || in_words(&estimate))
+    print_report(arguments.json, || &estimate, || in_words(&estimate))
 }
 
 pub(super) fn in_words(estimate: &Estimate) -> String {

@@ -64,7 +64,7 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
         let name = crate::sources::name(sources);
         write(path, &page(&design, &name, &in_words(&design)))?;
     }
-    print_report(arguments.json, &design, || in_words(&design))
+    print_report(arguments.json, || &design, || in_words(&design))
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Failure> {

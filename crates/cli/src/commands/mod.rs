@@ -42,14 +42,14 @@ fn print_json(value: &impl Serialize) -> Result<ExitCode, Failure> {
     print(&format!("{value:#}\n"))
 }
 
-/// Prints a report on standard output: as JSON, or in words.
-fn print_report(
+/// Prints a report on standard output: as JSON, or in words. Only the one asked for is made; that of many runs is large.
+fn print_report<R: Serialize>(
     as_json: bool,
-    report: &impl Serialize,
+    report: impl FnOnce() -> R,
     in_words: impl FnOnce() -> String,
 ) -> Result<ExitCode, Failure> {
     if as_json {
-        print_json(report)
+        print_json(&report())
     } else {
         print(&in_words())
     }

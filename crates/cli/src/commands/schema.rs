@@ -31,7 +31,9 @@ pub(super) fn show(
     schema: &Value,
     elsewhere: &str,
 ) -> Result<ExitCode, Failure> {
-    print_report(!arguments.markdown, schema, || {
-        reference(schema, &[elsewhere])
-    })
+    print_report(
+        !arguments.markdown,
+        || schema,
+        || reference(schema, &[elsewhere]),
+    )
 }

@@ -37,7 +37,7 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     let ending = go_on(&mut run, &mut frames, &stop);
     frames.synchronize()?;
     let report = frames.report();
-    print_report(arguments.json, &report, || in_words(&report) + "\n")?;
+    print_report(arguments.json, || &report, || in_words(&report) + "\n")?;
     ending
 }
 

@@ -24,22 +24,24 @@ pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
             states.filter(|state| *state == State::Done).count()
         }
     };
-    let runs = plan.sorted_runs().into_iter().map(|run| {
+    let report = || {
+        let runs = plan.sorted_runs().into_iter().map(|run| {
+            json!({
+                "identity": run.identity.to_string(),
+                "point": plan.point(&run).in_words(),
+                "replicate": run.replicate,
+            })
+        });
         json!({
-            "identity": run.identity.to_string(),
-            "point": plan.point(&run).in_words(),
-            "replicate": run.replicate,
+            "name": study.name,
+            "title": study.title,
+            "estimate": estimate,
+            "finished": finished,
+            "runs": runs.collect::<Vec<_>>(),
         })
-    });
-    let report = json!({
-        "name": study.name,
-        "title": study.title,
-        "estimate": estimate,
-        "finished": finished,
-        "runs": runs.collect::<Vec<_>>(),
-    });
+    };
     let words = || in_words(&study, &estimate, finished);
-    print_report(arguments.json, &report, words)
+    print_report(arguments.json, report, words)
 }
 
 fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) -> String {

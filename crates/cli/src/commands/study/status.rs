@@ -7,7 +7,7 @@ use peristalsis_study::{Bracket, Identity, State, Store, Survey, brackets};
 use serde_json::{Value, json};
 
 use super::{StatusArguments, WhyArguments};
-use crate::commands::{counted, print, print_json};
+use crate::commands::{counted, print, print_report};
 use crate::failure::Failure;
 
 /// Runs that are named in words; more are counted.
@@ -25,11 +25,11 @@ pub(super) fn print_status(
     store: &Store,
     survey: &Survey,
 ) -> Result<ExitCode, Failure> {
-    // A report of many runs is large: made only where it is asked for.
-    match as_json {
-        true => print_json(&report(store, survey)),
-        false => print(&in_words(store, survey)),
-    }
+    print_report(
+        as_json,
+        || report(store, survey),
+        || in_words(store, survey),
+    )
 }
 
 /// Where the flow changes its kind, of the runs that have ended.
