@@ -242,7 +242,7 @@ fn search<F: Fn(usize, usize) -> bool + Sync>(
     rule: &PairRule<'_, F>,
     threads: &Threads,
 ) {
-    let number = threads.stretches();
+    let number = threads.stretches(rule.diameter.len());
     let begin = |piece: usize| piece * cells[0].number() / number;
     pieces.resize_with(number, Piece::default);
     for (number, piece) in pieces.iter_mut().enumerate() {

@@ -28,8 +28,10 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, |number| number.get())
 }
 
-/// Stretches of work for each thread: one that is done early takes what others have not begun.
-const PER_THREAD: usize = 2;
+/// Stretches of work for each thread, at least and at most: one that is done early takes what others have not begun.
+const PER_THREAD: [usize; 2] = [2, 8];
+/// Spheres of a stretch where there may be more than the least: what neighbouring stretches both do is little beside it.
+const SPHERES_OF_A_STRETCH: usize = 4_000;
 
 /// Without work a thread stays awake for so long: between the parts of a step that are shared out one thread may prepare
 /// the next for some 0.1 ms.
@@ -105,12 +107,18 @@ impl Threads {
         self.0.as_deref()?.0.current_thread_index()
     }
 
-    /// Into how many stretches a work is best cut.
-    pub(crate) fn stretches(&self) -> usize {
+    /// Into how many stretches a work on so many spheres is best cut.
+    pub(crate) fn stretches(&self, spheres: usize) -> usize {
+        let [least, most] = PER_THREAD;
         match self.number() {
             1 => 1,
-            threads => PER_THREAD * threads,
+            threads => threads * (spheres / threads / SPHERES_OF_A_STRETCH).clamp(least, most),
         }
+    }
+
+    /// Which thread one of so many stretches belongs to: each has as many as the others, side by side.
+    fn owner(&self, stretch: usize, stretches: usize) -> usize {
+        ((stretch + 1) * self.number() - 1) / stretches
     }
 
     /// Never where there are no threads, so that what would share work out is not compiled there.
@@ -136,8 +144,8 @@ impl Threads {
 
     /// Does `work` with each of `stretches` and that part of `all` which belongs to it, `length` items long.
     ///
-    /// [`PER_THREAD`] stretches after the other belong to one thread, the next to the next and so on, round and round: what
-    /// a thread wrote in one part of a step, it mostly finds near at hand in the next.
+    /// The first belong to the first thread and so on: what a thread wrote in one part of a step, it mostly finds near at
+    /// hand in the next.
     pub(crate) fn each<S: Send, P: Cut>(
         &self,
         stretches: &mut [S],
@@ -161,17 +169,16 @@ impl Threads {
             parts.push(Mutex::new(Some((stretch, own))));
         }
         let threads = self.number();
-        let begun: Vec<Apart<AtomicUsize>> = (0..threads).map(|_| Apart::default()).collect();
+        // The next stretch of each thread.
+        let next = (0..threads).map(|owner| Apart(AtomicUsize::new(owner * number / threads)));
+        let next: Vec<_> = next.collect();
         team.call(&|| {
             let thread = self.index().unwrap_or(0);
             for owner in (thread..threads).chain(0..thread) {
-                let Apart(begun) = &begun[owner];
-                let part = |turn: usize| {
-                    let round = turn / PER_THREAD * threads + owner;
-                    parts.get(round * PER_THREAD + turn % PER_THREAD)
-                };
-                while part(begun.load(Ordering::Relaxed)).is_some() {
-                    let part = part(begun.fetch_add(1, Ordering::Relaxed));
+                let (Apart(next), end) = (&next[owner], (owner + 1) * number / threads);
+                while next.load(Ordering::Relaxed) < end {
+                    let part = next.fetch_add(1, Ordering::Relaxed);
+                    let part = parts[..end].get(part);
                     let part = part.and_then(|part| part.lock().ok()?.take());
                     if let Some((stretch, own)) = part {
                         work(stretch, own);
@@ -182,23 +189,24 @@ impl Threads {
     }
 
     /// Does `work` with the legs of each chain, one after the other. Each is done by the thread to which the stretch of that
-    /// leg belongs (see [`Threads::each`]), or by the caller where that does not come in time. A chain goes on before another ends.
+    /// leg, of so many, belongs (see [`Threads::each`]), or by the caller where that does not come in time. A chain goes on
+    /// before another ends.
     pub(crate) fn in_turn<L: Sync, const CHAINS: usize>(
         &self,
         chains: [&[L]; CHAINS],
+        stretches: usize,
         stretch: &(impl Fn(&L) -> usize + Sync),
         work: &(impl Fn(&L) + Sync),
     ) {
         let done = [const { AtomicUsize::new(0) }; CHAINS];
         if let Some((_, team)) = self.0.as_deref() {
-            let threads = self.number();
             team.call(&|| {
                 let Some(thread) = self.index() else {
                     return;
                 };
                 for (legs, done) in chains.iter().zip(&done) {
                     let legs = legs.iter().enumerate();
-                    let belongs = |leg| stretch(leg) / PER_THREAD % threads == thread;
+                    let belongs = |leg| self.owner(stretch(leg), stretches) == thread;
                     for (turn, leg) in legs.filter(|(_, leg)| belongs(leg)) {
                         if !wait_for(turn, done) {
                             return;

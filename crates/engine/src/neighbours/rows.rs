@@ -94,7 +94,7 @@ impl Rows {
             partner.reserve(2 * end as usize - partner.len());
         }
         partner.resize(end as usize, 0);
-        let number = threads.stretches();
+        let number = threads.stretches(spheres);
         let begin = |stretch: usize| stretch * spheres / number;
         stretches.clear();
         stretches.extend((0..number).map(|stretch| begin(stretch)..begin(stretch + 1)));

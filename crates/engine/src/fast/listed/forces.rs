@@ -180,7 +180,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         let of_contacts = Mutex::new(OfContacts::default());
         let of_rings = Mutex::new(OfRings::default());
         let chains = [of_grains, with_rings];
-        threads.in_turn(chains, &|leg| leg.section, &|leg| match elastic {
+        threads.in_turn(chains, sections.len(), &|leg| leg.section, &|leg| match elastic {
             Some(wall) if leg.of_rings => instructions.run(AddRings {
                 wall,
                 rings: &sections[leg.section].rings,

@@ -161,7 +161,7 @@ impl Shares {
             let lattice = wall.lattice();
             (lattice.rings() as usize, lattice.spheres_per_ring as usize)
         });
-        let most = threads.stretches();
+        let most = threads.stretches(all);
         let slices = match rings {
             0 => SLICES_OF_A_SECTION * most,
             rings => rings,

@@ -61,7 +61,7 @@ fn work_within_work_and_by_two_at_once_is_done_too() {
                     for _ in 0..50 {
                         assert_eq!(written(&threads, 9), expected(9));
                         let done = Mutex::new(Vec::new());
-                        threads.in_turn([&legs], &|leg| *leg, &|leg| {
+                        threads.in_turn([&legs], legs.len(), &|leg| *leg, &|leg| {
                             done.lock().expect("no panic").push(*leg);
                         });
                         assert_eq!(done.into_inner().expect("no panic"), legs);
@@ -102,7 +102,7 @@ fn legs_are_done_in_turn_whoever_comes() {
                 let done = Mutex::new(Vec::new());
                 threads.install(|| {
                     let chains = chains.each_ref().map(Vec::as_slice);
-                    threads.in_turn(chains, &|leg| stretch(leg.1), &|leg| {
+                    threads.in_turn(chains, 23, &|leg| stretch(leg.1), &|leg| {
                         done.lock().expect("no panic").push(*leg);
                     });
                 });
