@@ -71,12 +71,15 @@ pub(super) fn raster(drawing: &Drawing) -> Result<Raster, FigureError> {
         }
     }
     // The page is opaque, so the premultiplied colours are the colours.
-    let colours = painter.pixels.data().chunks_exact(4);
-    let pixels = colours.flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]);
+    let (colours, _) = painter.pixels.data().as_chunks();
+    let mut pixels = vec![0; 3 * colours.len()];
+    for (pixel, &[red, green, blue, _]) in pixels.as_chunks_mut().0.iter_mut().zip(colours) {
+        *pixel = [red, green, blue];
+    }
     Ok(Raster {
         width,
         height,
-        pixels: pixels.collect(),
+        pixels,
     })
 }
 
