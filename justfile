@@ -6,8 +6,8 @@ check:
 test:
     cargo test --workspace
 
-# The checks, the long validation runs, the audit of unsafe code, the clients of trajectories and the Python package (about three quarters of
-# an hour on two cores).
+# The checks, the long validation runs, the audit of unsafe code, the clients of trajectories and the Python package (about an hour
+# on two cores).
 full-check: check deny audit check-arm check-wasm check-windows clients check-viewer python slurm book check-memory
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
@@ -28,8 +28,8 @@ check-wasm:
 check-windows:
     bash scripts/check_windows.sh
 
-# A run of a million periods, a study of many runs and a loop of calls in Python, each in bounded memory (a quarter of an
-# hour).
+# A run of a million periods, a study of many runs, a viewer at its fastest and a loop of calls in Python, each in bounded
+# memory (half an hour).
 check-memory *options:
     cargo build --release -p peristalsis
     target/python/bin/python scripts/check_memory.py {{options}}

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Long work in bounded memory: a run of 10^6 periods, a study of many runs, a loop of 10^5 calls in Python.
+"""Long work in bounded memory: a run of 10^6 periods, a study of many runs, a viewer at its fastest for ten minutes, a
+loop of 10^5 calls in Python.
 
-    python3 scripts/check_memory.py                    all of it, a quarter of an hour
+    python3 scripts/check_memory.py                    all of it, half an hour
     python3 scripts/check_memory.py --only run study   some of it
     python3 scripts/check_memory.py --program PATH     another program than target/release/peristalsis
 
@@ -13,16 +14,26 @@ installed.
 from __future__ import annotations
 
 import argparse
+import base64
+import json
+import os
+import re
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 # Resident memory that is allowed [MB].
 CAP = 250
+WORK = ("run", "study", "viewer", "python")
 MINUTE = 60
+VIEWED = 10 * MINUTE
 TUBE = """preset = "frictionless"
 tube = { waves = 1, wavelength = 10, radius = 2, spheres_per_ring = 8, rings_per_wave = 8 }
 grains.number = 10
@@ -59,10 +70,43 @@ def resident(process: int) -> float:
     return next((int(line.split()[1]) / 1000 for line in lines if line.startswith("VmRSS")), 0.0)
 
 
-def watch(name: str, command: list[str]) -> bool:
-    """Runs a command to its end; whether it ended well within the cap."""
+def look_on(viewer: subprocess.Popen[bytes]) -> None:
+    """Has a viewer's tube run as fast as it can, and takes every frame, as a page does; then ends the viewer."""
+    try:
+        assert viewer.stdout is not None
+        address = re.match(rb"http://([^:/]+):(\d+)(/.*/)", viewer.stdout.readline())
+        assert address is not None, "no address"
+        host, port, path = (part.decode() for part in address.groups())
+        with socket.create_connection((host, int(port))) as page:
+            key = base64.b64encode(os.urandom(16)).decode()
+            lines = (
+                f"GET {path}live HTTP/1.1",
+                f"Host: {host}:{port}",
+                "Connection: Upgrade",
+                "Upgrade: websocket",
+                "Sec-WebSocket-Version: 13",
+                f"Sec-WebSocket-Key: {key}",
+            )
+            page.sendall("".join(f"{line}\r\n" for line in (*lines, "")).encode())
+            for command in ({"type": "speed", "periods_per_second": None}, {"type": "play", "playing": True}):
+                text = json.dumps(command).encode()
+                # A text, masked with zeros.
+                page.sendall(bytes((0x81, 0x80 | len(text), 0, 0, 0, 0)) + text)
+            begun, received = time.monotonic(), 0
+            while time.monotonic() - begun < VIEWED and (more := len(page.recv(1 << 16))):
+                received += more
+            print(f"  {received / 1e6:.0f} MB of frames in {time.monotonic() - begun:.0f} s", flush=True)
+    finally:
+        viewer.send_signal(signal.SIGINT)
+
+
+def watch(name: str, command: list[str], beside: Callable[[subprocess.Popen[bytes]], None] | None = None) -> bool:
+    """Runs a command to its end, and something beside it; whether it ended well within the cap."""
     begun = time.monotonic()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    output = subprocess.PIPE if beside else subprocess.DEVNULL
+    process = subprocess.Popen(command, stdout=output, stderr=subprocess.PIPE)
+    if beside:
+        threading.Thread(target=beside, args=(process,)).start()
     minute = most = 0.0
     while process.poll() is None:
         most = max(most, resident(process.pid))
@@ -80,7 +124,7 @@ def watch(name: str, command: list[str]) -> bool:
 
 def main() -> int:
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--only", nargs="+", choices=("run", "study", "python"), default=("run", "study", "python"))
+    options.add_argument("--only", nargs="+", choices=WORK, default=WORK)
     options.add_argument("--program", default=str(REPOSITORY / "target/release/peristalsis"))
     arguments = options.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
@@ -92,9 +136,11 @@ def main() -> int:
         commands = {
             "run": [program, "run", str(tube), "--out", str(folder / "run"), "--quiet", "--threads", "1"],
             "study": [program, "study", "run", str(study), "--store", str(folder / "store"), "--quiet", "--for", "5m"],
+            "viewer": [program, "view", "frictionless", "--saves", str(folder / "saves"), "--threads", "1"],
             "python": [sys.executable, "-c", LOOP, str(tube)],
         }
-        outcomes = [watch(name, commands[name]) for name in arguments.only]
+        beside = {"viewer": look_on}
+        outcomes = [watch(name, commands[name], beside.get(name)) for name in arguments.only]
     return 0 if all(outcomes) else 1
 
 
