@@ -23,9 +23,9 @@ import socket
 import subprocess
 import sys
 import tempfile
-import threading
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -92,10 +92,12 @@ def look_on(viewer: subprocess.Popen[bytes]) -> None:
                 text = json.dumps(command).encode()
                 # A text, masked with zeros.
                 page.sendall(bytes((0x81, 0x80 | len(text), 0, 0, 0, 0)) + text)
+            # A tube that has stopped sends nothing: an error.
+            page.settimeout(MINUTE)
             begun, received = time.monotonic(), 0
-            while time.monotonic() - begun < VIEWED and (more := len(page.recv(1 << 16))):
-                received += more
-            print(f"  {received / 1e6:.0f} MB of frames in {time.monotonic() - begun:.0f} s", flush=True)
+            while time.monotonic() - begun < VIEWED:
+                received += len(page.recv(1 << 16))
+            print(f"  {received / 1e6:.0f} MB of frames", flush=True)
     finally:
         viewer.send_signal(signal.SIGINT)
 
@@ -105,20 +107,22 @@ def watch(name: str, command: list[str], beside: Callable[[subprocess.Popen[byte
     begun = time.monotonic()
     output = subprocess.PIPE if beside else subprocess.DEVNULL
     process = subprocess.Popen(command, stdout=output, stderr=subprocess.PIPE)
-    if beside:
-        threading.Thread(target=beside, args=(process,)).start()
-    minute = most = 0.0
-    while process.poll() is None:
-        most = max(most, resident(process.pid))
-        if time.monotonic() - begun < MINUTE:
-            minute = most
-        time.sleep(0.2)
+    with ThreadPoolExecutor() as pool:
+        onlooker = pool.submit(beside, process) if beside else None
+        minute = most = 0.0
+        while process.poll() is None:
+            most = max(most, resident(process.pid))
+            if time.monotonic() - begun < MINUTE:
+                minute = most
+            time.sleep(0.2)
     assert process.stderr is not None
     said = process.stderr.read().decode()
     seconds = time.monotonic() - begun
     print(f"{name}: {minute:.0f} MB in the first minute, {most:.0f} MB at most, {seconds:.0f} s", flush=True)
     if process.returncode != 0:
         print(said)
+    if onlooker:
+        onlooker.result()
     return process.returncode == 0 and most < CAP
 
 
@@ -136,7 +140,8 @@ def main() -> int:
         commands = {
             "run": [program, "run", str(tube), "--out", str(folder / "run"), "--quiet", "--threads", "1"],
             "study": [program, "study", "run", str(study), "--store", str(folder / "store"), "--quiet", "--for", "5m"],
-            "viewer": [program, "view", "frictionless", "--saves", str(folder / "saves"), "--threads", "1"],
+            # So long that it does not come to the most samples that a viewer keeps, where it would stop.
+            "viewer": [program, "view", "frictionless", "--set", "tube.waves=30", "--saves", str(folder / "saves")],
             "python": [sys.executable, "-c", LOOP, str(tube)],
         }
         beside = {"viewer": look_on}
