@@ -6,7 +6,7 @@
 pub enum EngineError {
     /// A sphere moved further than its contacts can follow: the step is too long or the forces too strong.
     #[error(
-        "diverged at step {step} (t = {time}): {}{} moved {displacement} in one step, more than the {limit} that keeps \
+        "diverged at step {step} (t = {time:.3}): {}{} moved {displacement:.3} in one step, more than the {limit:.3} that keeps \
          contacts from being passed over",
         sphere(*grain, *grains),
         if *outside { ", outside the tube," } else { "" }

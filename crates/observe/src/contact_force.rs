@@ -76,11 +76,10 @@ impl ContactForces {
         }
     }
 
-    /// The records from the time `start` \[t\] on, or else the last record before it.
+    /// The records from the time `start` \[t\] on.
     pub fn late(&self, start: f64) -> &[ContactForce] {
         let looks = self.looks.rows();
-        let early = looks.partition_point(|look| look.time < start);
-        &looks[early.min(looks.len().saturating_sub(1))..]
+        &looks[looks.partition_point(|look| look.time < start)..]
     }
 
     /// Whether a run can have come to this state, read from a file.

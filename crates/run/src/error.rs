@@ -167,7 +167,7 @@ impl RunError {
             ),
             Self::Engine(EngineError::Diverged { outside: true, .. }) => Some(
                 "it slipped through the wall and fell or flew on: take more wall spheres (tube.spheres_per_ring, \
-                 tube.rings_per_wave), stiffer contacts, or fewer or larger grains",
+                 tube.rings_per_wave), stiffer contacts, fewer or larger grains, or a shorter run.time_step",
             ),
             Self::Engine(EngineError::Diverged { .. }) => {
                 Some("take a shorter run.time_step, or softer or fewer grains")

@@ -117,10 +117,12 @@ pub(super) struct ForceOfContacts {
     pub(super) largest: f64,
     /// Mean of the force that 99 % of them do not exceed, and its error.
     pub(super) high: (f64, f64),
+    /// At so many moments.
+    pub(super) moments: usize,
 }
 
 impl ForceOfContacts {
-    /// `None` before the first whole period.
+    /// `None` where none was looked at so late.
     pub(super) fn of(late: &[Sample], forces: &ContactForces) -> Option<Self> {
         let looks = forces.late(late.first()?.time);
         let high = || looks.iter().map(|look| look.high);
@@ -129,6 +131,7 @@ impl ForceOfContacts {
         Some(Self {
             largest,
             high: (mean, error_of(high())),
+            moments: looks.len(),
         })
     }
 }

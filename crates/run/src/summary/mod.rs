@@ -7,6 +7,7 @@ mod local_flow;
 mod table;
 mod written;
 
+use peristalsis_analysis::number::known_error;
 use peristalsis_configuration::{Configuration, Units};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
@@ -114,6 +115,10 @@ pub struct Summary {
     packing: PackingReport,
 }
 
+/// Errors of the mean by which its halves differ at least where the flow still changes. Those of a steady flow differ by
+/// two errors, as a standard deviation.
+const DRIFT: f64 = 5.0;
+
 impl Summary {
     /// The outcome of a run so far.
     pub fn of(run: &Run, status: Status, message: Option<String>) -> Self {
@@ -179,7 +184,8 @@ impl Summary {
 
     /// Late mean of J \[1/t\].
     pub fn flow_rate(&self) -> f64 {
-        self.mean(|sample| sample.flow_rate)
+        // No flow has no sign.
+        self.mean(|sample| sample.flow_rate) + 0.0
     }
 
     /// Late mean of -J where J < 0, and its error \[1/t\].
@@ -229,10 +235,28 @@ impl Summary {
     }
 
     /// Late mean of the normal force that 99 % of the contacts of grains do not exceed, and the largest
-    /// \[m d/t^2\]; `None` before the first whole period.
-    pub fn contact_force(&self) -> Option<(f64, f64)> {
+    /// \[m d/t^2\], at how many moments; `None` where none was looked at so late.
+    pub fn contact_force(&self) -> Option<(f64, f64, usize)> {
         self.contact_force
-            .map(|force| (force.high.0, force.largest))
+            .map(|force| (force.high.0, force.largest, force.moments))
+    }
+
+    /// Late J/Jmax, mean of its second half less that of its first; NaN below two samples.
+    pub fn flow_rate_ratio_drift(&self) -> f64 {
+        let ratios = ratios_of(&self.late);
+        let (first, second) = ratios.split_at(ratios.len() / 2);
+        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        if first.is_empty() {
+            return f64::NAN;
+        }
+        mean(second) - mean(first)
+    }
+
+    /// Whether that is more than the error of J/Jmax lets expect of a flow that no longer changes.
+    pub fn is_still_changing(&self) -> bool {
+        let (ratio, error) = self.flow_rate_ratio;
+        known_error(ratio, error)
+            .is_some_and(|error| self.flow_rate_ratio_drift().abs() > DRIFT * error)
     }
 
     fn mean(&self, value: fn(&Sample) -> f64) -> f64 {

@@ -7,8 +7,8 @@ use peristalsis_observe::Reading::{
 };
 use peristalsis_observe::{Quantity, Reading};
 
+use super::Summary;
 use super::late::error_of;
-use super::{Summary, ratios_of};
 use crate::{REVISION, VERSION};
 
 /// A quantity of a run and where it is written.
@@ -120,7 +120,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("transition_time_80", "t", "tau with the threshold 0.8; missing where there was none", Optional(|s| s.transition_times[7])).only_in_rows(),
     result("transition_time_90", "t", "tau with the threshold 0.9; missing where there was none", Optional(|s| s.transition_times[8])).only_in_rows(),
     result("flow_rate_ratio", "1", "late mean of J/Jmax, grains inside; of J over that of Jmax where the wave pauses", Measured(|s| s.flow_rate_ratio)).labelled("J / Jmax, late mean"),
-    result("flow_rate_ratio_drift", "1", "late J/Jmax, mean of its second half less that of its first", Real(|s| drift(&ratios_of(&s.late)))),
+    result("flow_rate_ratio_drift", "1", "late J/Jmax, mean of its second half less that of its first", Real(Summary::flow_rate_ratio_drift)),
     result("flow_rate_ratio_variance", "1", "variance of the late averages of J/Jmax over a period each", Real(Summary::flow_rate_ratio_variance)).labelled("variance of J / Jmax"),
     result("flow_rate_ratio_raw", "1", "late mean of J/Jmax of all grains", Real(|s| s.mean(|sample| sample.flow_rate_ratio_raw))),
     result("flow_rate", "1/t", "late mean of J", Real(Summary::flow_rate)).labelled("flow rate J"),
@@ -210,14 +210,4 @@ pub(crate) fn word(choice: impl serde::Serialize) -> String {
     let text = serde_json::to_value(choice).ok();
     text.and_then(|it| it.as_str().map(str::to_owned))
         .unwrap_or_default()
-}
-
-/// Mean of the second half of a series less the mean of the first half; NaN below two values.
-fn drift(series: &[f64]) -> f64 {
-    let (first, second) = series.split_at(series.len() / 2);
-    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-    if first.is_empty() {
-        return f64::NAN;
-    }
-    mean(second) - mean(first)
 }

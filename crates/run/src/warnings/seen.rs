@@ -39,10 +39,11 @@ pub(super) fn warnings(run: &Run) -> Vec<Warning> {
 
 fn packed_too_densely(configuration: &Configuration, packed: f64, limit: f64) -> Warning {
     let message = format!(
-        "the grains already overlap by up to {:.0} % of a diameter where they are packed, at a volume fraction of {:.3} of the \
+        "the grains already overlap by up to {:.0} % of {} where they are packed, at a volume fraction of {:.3} of the \
          tube between the centres of its wall; solid grains have no room there, and beyond {:.0} \
          % soft spheres no longer pass for solid ones: take fewer grains or a wider tube",
         100.0 * packed,
+        of_whom(configuration),
         configuration.volume_fraction(),
         100.0 * limit
     );
@@ -62,12 +63,21 @@ fn overlapped(configuration: &Configuration, overlap: f64, limit: f64) -> Warnin
         }
     };
     let message = format!(
-        "grains overlapped by up to {:.0} % of a diameter, with each other or with the wall; beyond {:.0} % soft spheres \
+        "grains overlapped by up to {:.0} % of {}, with each other or with the wall; beyond {:.0} % soft spheres \
          no longer pass for solid grains: take {harder}, fewer grains, a wider tube or a weaker drive",
         100.0 * overlap,
+        of_whom(configuration),
         100.0 * limit
     );
     Warning { key, message }
+}
+
+fn of_whom(configuration: &Configuration) -> &'static str {
+    let grains = &configuration.grains;
+    match grains.diameter_min < grains.diameter_max {
+        true => "the largest diameter",
+        false => "a diameter",
+    }
 }
 
 /// Part of the looks at the inlet at which none waited, above which the inlet counts as dry.

@@ -24,6 +24,11 @@ pub(super) fn how_far(run: &Run, summary: &Summary) -> String {
 pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     let configuration = run.configuration();
     let transition = match summary.transition_time {
+        // The mean of a period is the first that there is.
+        Some(time) if time * configuration.drive.strain_rate < 1.0 => format!(
+            "transition in the first period, at t = {time:.1} if the flow rises evenly: J/Jmax crosses {}",
+            configuration.observe.transition_threshold
+        ),
         Some(time) => format!(
             "transition at t = {time:.1} ({} periods): J/Jmax crosses {}",
             tenths(time * configuration.drive.strain_rate),
@@ -40,20 +45,37 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     let said = measured(summary.flow_rate_ratio);
     let mut flow = match known_error(ratio, error) {
         Some(_) => format!("J/Jmax = {said} within this run, mean of its last {late:.0} %"),
+        None if error.is_finite() => {
+            format!("J/Jmax = {said} throughout its last {late:.0} %")
+        }
         None if ratio.is_finite() => {
             format!("J/Jmax = {said}, mean of its last {late:.0} % (too short for an error)")
         }
+        None if summary.flow_rate().is_nan() => "no sample was taken".to_owned(),
         None => format!(
             "J = {}, mean of its last {late:.0} %; no J/Jmax without grains inside and a moving wave",
             significant(summary.flow_rate() + 0.0, 4)
         ),
     };
-    if let Some((newtonian, _)) = summary.newtonian {
+    if let Some((newtonian, clear_bore)) = summary.newtonian {
         // The load of a fluid counts against its viscosity, which grains do not have.
         let is_loaded = summary.pumping.is_some();
         let load = if is_loaded { " without load" } else { "" };
         let newtonian = measured((newtonian, f64::NAN));
-        flow.push_str(&format!(" (a Newtonian fluid{load}: {newtonian})"));
+        // Whoever has a real tube knows its clear bore, not where spheres stand for its wall.
+        let clear_bore = clear_bore.filter(|_| configuration.units.is_some());
+        let clear_bore =
+            clear_bore.map(|it| format!("; in the clear bore {}", measured((it, f64::NAN))));
+        let clear_bore = clear_bore.unwrap_or_default();
+        flow.push_str(&format!(
+            " (a Newtonian fluid{load}: {newtonian}{clear_bore})"
+        ));
+    }
+    if summary.is_still_changing() {
+        flow.push_str(&format!(
+            "\nit still changes: by {} from the first half of this time to the second",
+            significant(summary.flow_rate_ratio_drift(), 2)
+        ));
     }
     // Weight that carries grains through an open tube is no load.
     let falls = |pumping: &&Pumping| summary.discharge.is_some() && pumping.pressure_rise <= 0.0;
@@ -99,11 +121,12 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             configuration.observe.profile_bins
         ));
         let force = |value: f64| summary.in_si(value, Units::force).map(number);
-        if let Some((high, largest)) = summary.contact_force()
+        if let Some((high, largest, moments)) = summary.contact_force()
             && let (Some(high), Some(largest)) = (force(high), force(largest))
         {
             flow.push_str(&format!(
-                "\n       99 % of the contacts bear less than {high} N, the largest bears {largest} N"
+                "\n       99 % of the contacts bear less than {high} N, the largest bears {largest} N (at {})",
+                counted(moments, "moment")
             ));
         }
     }

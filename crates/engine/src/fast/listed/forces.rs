@@ -180,20 +180,25 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         let of_contacts = Mutex::new(OfContacts::default());
         let of_rings = Mutex::new(OfRings::default());
         let chains = [of_grains, with_rings];
-        threads.in_turn(chains, sections.len(), &|leg| leg.section, &|leg| match elastic {
-            Some(wall) if leg.of_rings => instructions.run(AddRings {
-                wall,
-                rings: &sections[leg.section].rings,
-                sums: &mut of_rings.lock().unwrap_or_else(PoisonError::into_inner),
-            }),
-            _ => instructions.run(AddContacts {
-                leg,
-                pairs,
-                runs,
-                sums: &mut of_contacts.lock().unwrap_or_else(PoisonError::into_inner),
-                complete,
-            }),
-        });
+        threads.in_turn(
+            chains,
+            sections.len(),
+            &|leg| leg.section,
+            &|leg| match elastic {
+                Some(wall) if leg.of_rings => instructions.run(AddRings {
+                    wall,
+                    rings: &sections[leg.section].rings,
+                    sums: &mut of_rings.lock().unwrap_or_else(PoisonError::into_inner),
+                }),
+                _ => instructions.run(AddContacts {
+                    leg,
+                    pairs,
+                    runs,
+                    sums: &mut of_contacts.lock().unwrap_or_else(PoisonError::into_inner),
+                    complete,
+                }),
+            },
+        );
         let of_rings = of_rings.into_inner();
         let of_rings = of_rings.unwrap_or_else(PoisonError::into_inner);
         let of_contacts = of_contacts.into_inner();
