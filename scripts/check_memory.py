@@ -96,7 +96,9 @@ def look_on(viewer: subprocess.Popen[bytes]) -> None:
             page.settimeout(MINUTE)
             begun, received = time.monotonic(), 0
             while time.monotonic() - begun < VIEWED:
-                received += len(page.recv(1 << 16))
+                more = page.recv(1 << 16)
+                assert more, "the viewer has hung up"
+                received += len(more)
             print(f"  {received / 1e6:.0f} MB of frames", flush=True)
     finally:
         viewer.send_signal(signal.SIGINT)
@@ -141,7 +143,7 @@ def main() -> int:
             "run": [program, "run", str(tube), "--out", str(folder / "run"), "--quiet", "--threads", "1"],
             "study": [program, "study", "run", str(study), "--store", str(folder / "store"), "--quiet", "--for", "5m"],
             # So long that it does not come to the most samples that a viewer keeps, where it would stop.
-            "viewer": [program, "view", "frictionless", "--set", "tube.waves=30", "--saves", str(folder / "saves")],
+            "viewer": [program, "view", "frictionless", "--set", "tube.waves=1000", "--saves", str(folder / "saves")],
             "python": [sys.executable, "-c", LOOP, str(tube)],
         }
         beside = {"viewer": look_on}
