@@ -69,8 +69,10 @@ pub struct SnapshotFigure<'a> {
     pub title: &'a str,
     /// The snapshots from top to bottom.
     pub snapshots: &'a [Snapshot<'a>],
-    /// Unit of the velocities, in markup: the speed *c* of the wave where it moves.
-    pub speed: &'a str,
+    /// Name of the axis along the tube, in markup.
+    pub axis: &'a str,
+    /// Name of the axial velocities with their unit, in markup.
+    pub velocity: &'a str,
     /// Width of the figure.
     pub width: Width,
 }
@@ -117,7 +119,7 @@ impl SnapshotFigure<'_> {
             for number in 0..rows {
                 let is_last = index + 1 == parts.len() && number + 1 == rows;
                 let common_extent = if is_one_extent { &*extents[0] } else { "" };
-                let name = is_last.then(|| with_extent("*z*/*d*", common_extent));
+                let name = is_last.then(|| with_extent(self.axis, common_extent));
                 let title = if number == 0 { &*header } else { "" };
                 let from = row * number as f64;
                 let panel = ChartPanel::new(&name.unwrap_or_default(), "*y*/*d*")
@@ -128,8 +130,8 @@ impl SnapshotFigure<'_> {
             }
         }
         let grains = self.snapshots.iter().flat_map(|snapshot| snapshot.grains);
-        let name = format!("axial velocity along the wave, *v_z*/{}", self.speed);
-        let mut scale = ColourScale::new(&name, -DEEPEST, DEEPEST).palette(Palette::Diverging);
+        let mut scale =
+            ColourScale::new(self.velocity, -DEEPEST, DEEPEST).palette(Palette::Diverging);
         // Its ends say so where some of the grains are beyond them.
         scale.found = extent(grains.map(|grain| grain.axial_velocity));
         ChartFigure::grid(1, panels)
@@ -314,12 +316,12 @@ mod tests {
     }
 
     fn draw(snapshots: &[Snapshot<'_>]) -> Result<Drawing, FigureError> {
-        let (title, width) = ("", Width::SingleColumn);
         SnapshotFigure {
-            title,
+            title: "",
             snapshots,
-            speed: "*c*",
-            width,
+            axis: "*z*/*d*",
+            velocity: "*v_z*/*c*",
+            width: Width::SingleColumn,
         }
         .draw()
     }

@@ -348,7 +348,8 @@ fn snapshot(length: f64, width: Width) -> Drawn {
             period: length,
             wavelength: 10.0,
         }],
-        speed: "*c*",
+        axis: "*z*/*d*",
+        velocity: "axial velocity along the wave, *v_z*/*c*",
         width,
     }
     .draw()
@@ -380,7 +381,8 @@ fn snapshots() -> Drawn {
             snapshot("(a)  unjammed, *t*/*T* = 3", &grains),
             snapshot("(b)  jammed, *t*/*T* = 40", &jammed),
         ],
-        speed: "*c*",
+        axis: "*z*/*d*",
+        velocity: "axial velocity along the wave, *v_z*/*c*",
         width: Width::DoubleColumn,
     }
     .draw()

@@ -93,7 +93,8 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
         order = order[np.argsort(grains[order, 0])]
         _spheres(new, along(grains[order, 2]), grains[order, 1], diameters[order], velocity[order], escaped[order], length)
         part = "" if end - begin >= length * (1 - 1e-9) else f"  ({min(waves, all_waves - first)} of {all_waves} waves shown)"
-        new.set(xlabel=f"$z/d${part}", ylabel="$y/d$", aspect="equal", xlim=(begin, end), ylim=(-reach, reach))
+        name = "$z/d$" if heading > 0 else "$(L - z)/d$"
+        new.set(xlabel=name + part, ylabel="$y/d$", aspect="equal", xlim=(begin, end), ylim=(-reach, reach))
         cycles = rf"$t/T$ = {simulation.period:.2f}"
         lost = f",  {escaped.sum()} of {len(grains)} grains escaped" if escaped.any() else ""
         if ax is None:

@@ -202,7 +202,8 @@ fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure> {
     let figure = SnapshotFigure {
         title: "",
         snapshots: &snapshots,
-        speed: "*c*",
+        axis: "*z*/*d*",
+        velocity: "axial velocity along the wave, *v_z*/*c*",
         width: Width::DoubleColumn,
     };
     let first = &pictures[0].row;

@@ -49,13 +49,28 @@ fn draw(title: &str, runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
     let snapshots: Vec<Snapshot<'_>> = labelled
         .map(|((label, _), view)| view.snapshot(label))
         .collect();
+    let way = if fastest.is_some() { "tube" } else { "wave" };
     SnapshotFigure {
         title,
         snapshots: &snapshots,
-        speed: &unit,
+        axis: axis(runs),
+        velocity: &format!("axial velocity along the {way}, *v_z*/{unit}"),
         width: Width::DoubleColumn,
     }
     .draw()
+}
+
+/// Name of the axis along the tube, in markup, on which the wave runs to the right.
+fn axis(runs: &[(&str, &Run)]) -> &'static str {
+    let all_head = |way: f64| {
+        let mut headings = runs.iter().map(|(_, run)| run.configuration().heading());
+        headings.all(|heading| heading * way > 0.0)
+    };
+    match (all_head(1.0), all_head(-1.0)) {
+        (true, _) => "*z*/*d*",
+        (_, true) => "(*L* \u{2212} *z*)/*d*",
+        _ => "way along the wave / *d*",
+    }
 }
 
 /// Unit of velocities, in markup: the speed of the wave, or of the fastest grain where the wave stands.
