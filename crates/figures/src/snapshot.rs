@@ -43,7 +43,7 @@ pub enum SnapshotWall<'a> {
     },
 }
 
-/// Side view of a part of a periodic tube: grains coloured by their axial velocity over the wave speed, blue against the
+/// Side view of a part of a tube: grains coloured by their axial velocity over the wave speed, blue against the
 /// wave, white at rest and red along it.
 #[derive(Clone, Copy, Debug)]
 pub struct Snapshot<'a> {
@@ -55,8 +55,10 @@ pub struct Snapshot<'a> {
     pub wall: SnapshotWall<'a>,
     /// Length of the part from the tube's beginning.
     pub length: f64,
-    /// Length of the tube: spheres also show where their images lie in the part.
-    pub period: f64,
+    /// Length of the tube.
+    pub tube: f64,
+    /// Whether the tube is periodic: spheres also show where their images lie in the part.
+    pub is_periodic: bool,
     /// Wavelength, so that a part can say how many of the tube's waves it shows.
     pub wavelength: f64,
 }
@@ -147,7 +149,7 @@ impl SnapshotFigure<'_> {
 impl Snapshot<'_> {
     /// How much of the tube is shown, in markup; nothing where it is all of it.
     fn extent(&self) -> String {
-        if self.length >= self.period * (1.0 - 1e-9) {
+        if self.length >= self.tube * (1.0 - 1e-9) {
             return String::new();
         }
         let number = |length: f64| {
@@ -155,10 +157,10 @@ impl Snapshot<'_> {
             number.strip_suffix(".0").unwrap_or(&number).to_owned()
         };
         if self.length < 0.1 * self.wavelength {
-            let [shown, all] = [self.length, self.period].map(|length| decimal(length, 0));
+            let [shown, all] = [self.length, self.tube].map(|length| decimal(length, 0));
             return format!("{shown} of {all} *d* shown");
         }
-        let [shown, all] = [self.length, self.period].map(number);
+        let [shown, all] = [self.length, self.tube].map(number);
         format!("{shown} of {all} waves shown")
     }
 }
@@ -182,7 +184,7 @@ struct Part<'a> {
 impl<'a> Part<'a> {
     fn of(snapshot: &'a Snapshot<'a>) -> Result<Self, FigureError> {
         positive("length of the snapshot", snapshot.length)?;
-        positive("period of the tube", snapshot.period)?;
+        positive("length of the tube", snapshot.tube)?;
         positive("wavelength", snapshot.wavelength)?;
         let mut grains = snapshot.grains.to_vec();
         for (index, grain) in grains.iter().enumerate() {
@@ -235,13 +237,15 @@ impl<'a> Part<'a> {
     /// Adds what shows between two places along the tube.
     fn add_to(&self, panel: ChartPanel, (from, to): (f64, f64)) -> ChartPanel {
         let to = to.min(self.snapshot.length);
+        let shifts = match self.snapshot.is_periodic {
+            true => &[0.0, -self.snapshot.tube, self.snapshot.tube][..],
+            false => &[0.0],
+        };
         // Places of a sphere and of its periodic images.
         let places = |sphere: &SnapshotSphere| {
             let (along, radius) = (sphere.along, sphere.diameter / 2.0);
-            [0.0, -self.snapshot.period, self.snapshot.period]
-                .map(|shift| along + shift)
-                .into_iter()
-                .filter(move |along| along + radius > from && along - radius < to)
+            let places = shifts.iter().map(move |shift| along + shift);
+            places.filter(move |along| along + radius > from && along - radius < to)
         };
         let (mut wall, mut grains) = (Spheres::default(), Spheres::default());
         for sphere in &self.spheres {
@@ -310,7 +314,8 @@ mod tests {
             grains,
             wall,
             length: 8.0,
-            period: 8.0,
+            tube: 8.0,
+            is_periodic: true,
             wavelength: 8.0,
         }
     }
@@ -363,9 +368,16 @@ mod tests {
     }
 
     #[test]
-    fn a_grain_at_the_seam_shows_at_both_ends() {
+    fn a_grain_at_the_seam_shows_at_both_ends_of_a_periodic_tube() {
         let grains = [grain(0.1, 0.0, 0.0)];
-        assert_eq!(spheres(&[snapshot(&grains, NO_WALL)]).len(), 2);
+        let periodic = snapshot(&grains, NO_WALL);
+        assert_eq!(spheres(&[periodic]).len(), 2);
+        let is_periodic = false;
+        let open = Snapshot {
+            is_periodic,
+            ..periodic
+        };
+        assert_eq!(spheres(&[open]).len(), 1);
     }
 
     #[test]
@@ -374,7 +386,7 @@ mod tests {
         let short = snapshot(&grains, NO_WALL);
         let long = Snapshot {
             length: 16.0,
-            period: 32.0,
+            tube: 32.0,
             ..short
         };
         let [(_, one, _), (_, other, _)] = spheres(&[short, long])[..] else {
@@ -406,14 +418,14 @@ mod tests {
     fn a_part_of_the_tube_says_how_much_it_is() {
         let grains = [grain(1.0, 0.0, 2.0)];
         let part = Snapshot {
-            period: 40.0,
+            tube: 40.0,
             label: "fast",
             ..snapshot(&grains, NO_WALL)
         };
         let names = |snapshots: &[Snapshot<'_>]| draw(snapshots).expect("drawable").svg();
         assert!(names(&[part]).contains("z/d  (1 of 5 waves shown)"));
         let mut whole = part;
-        whole.period = 8.0;
+        whole.tube = 8.0;
         let both = names(&[part, whole]);
         assert!(both.contains("fast  (1 of 5 waves shown)") && both.contains("\"z/d\""));
         assert!(both.contains("≥ 1") && !both.contains("≤"), "v/c is 2");

@@ -345,7 +345,8 @@ fn snapshot(length: f64, width: Width) -> Drawn {
             grains: &grains,
             wall: SnapshotWall::Spheres(&wall),
             length,
-            period: length,
+            tube: length,
+            is_periodic: true,
             wavelength: 10.0,
         }],
         axis: "*z*/*d*",
@@ -372,7 +373,8 @@ fn snapshots() -> Drawn {
             radius: &radius,
         },
         length: 20.0,
-        period: 100.0,
+        tube: 100.0,
+        is_periodic: true,
         wavelength: 10.0,
     };
     SnapshotFigure {

@@ -194,7 +194,8 @@ fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure> {
                 grains,
                 wall: SnapshotWall::Spheres(wall),
                 length,
-                period: length,
+                tube: length,
+                is_periodic: true,
                 wavelength,
             }
         })

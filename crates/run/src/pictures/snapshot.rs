@@ -106,6 +106,7 @@ struct SideView {
     spheres: Vec<SnapshotSphere>,
     length: f64,
     tube: f64,
+    is_periodic: bool,
     wavelength: f64,
 }
 
@@ -123,7 +124,8 @@ impl SideView {
                 SnapshotWall::Spheres(&self.spheres)
             },
             length: self.length,
-            period: self.tube,
+            tube: self.tube,
+            is_periodic: self.is_periodic,
             wavelength: self.wavelength,
         }
     }
@@ -176,6 +178,7 @@ impl SideView {
             spheres,
             length,
             tube,
+            is_periodic: configuration.tube.ends.is_periodic(),
             wavelength: configuration.tube.wavelength,
         }
     }
