@@ -76,14 +76,17 @@ fn title(configuration: &Configuration) -> String {
     let (control, density) = match configuration.drive.control {
         Control::Strain { width } => {
             let width = value(ScheduledParameter::Width, width);
-            let density = format!("*ρ* = {:.3}", configuration.volume_fraction());
+            let density = format!("*ρ* = {:.3},  ", configuration.volume_fraction());
+            // Not all grains are in an open tube.
+            let is_known = configuration.tube.ends.is_periodic();
+            let density = if is_known { density } else { String::new() };
             (format!("*w* = {width} *d*"), density)
         }
         Control::Stress {
             force_amplitude, ..
         } => {
             let force = value(ScheduledParameter::ForceAmplitude, force_amplitude);
-            let density = format!("*n* = {:.3}", configuration.number_density());
+            let density = format!("*n* = {:.3},  ", configuration.number_density());
             (format!("*f*^{{P}} = {force} *Yd*^{{2}}"), density)
         }
     };
@@ -93,7 +96,7 @@ fn title(configuration: &Configuration) -> String {
     );
     let number = || format!("*N* = {}", configuration.grains.number);
     let rest = particular(configuration).unwrap_or_else(number);
-    format!("{control},  *ε\u{307}* = {rate},  {density},  {rest}")
+    format!("{control},  *ε\u{307}* = {rate},  {density}{rest}")
 }
 
 /// Unusual settings of a run: its waveform, its body force.

@@ -8,7 +8,7 @@ use peristalsis_observe::TubeShape;
 
 use super::title;
 use crate::run::Run;
-use crate::scene::units;
+use crate::scene::{moving_instant, still_instant, units};
 use crate::spheres::{SeenSphere, seen_spheres};
 
 /// Length of tube that a snapshot shows at most, in wavelengths.
@@ -25,8 +25,13 @@ const OUTLINE_POINTS: u32 = 400;
 
 /// The final state of a run.
 pub(super) fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
-    let cycles = run.simulation().wall().cycles();
-    let title = format!("{},  *t*/*T* = {cycles:.2}", title(run.configuration()));
+    let simulation = run.simulation();
+    let instant = if run.configuration().wave_speed() == 0.0 {
+        still_instant(simulation.time(), units(run.configuration()))
+    } else {
+        moving_instant(simulation.wall().cycles())
+    };
+    let title = format!("{},  {instant}", title(run.configuration()));
     draw(&title, &[("", run)])
 }
 

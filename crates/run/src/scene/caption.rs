@@ -1,7 +1,7 @@
 //! What is written around a picture.
 
 use peristalsis_analysis::number::decimal;
-use peristalsis_figures::{PlaceMark, ScaleBar};
+use peristalsis_figures::{PlaceMark, ScaleBar, Units};
 use peristalsis_formats::Frame;
 
 use super::{Aspect, MARGIN, PictureScene, Place};
@@ -9,6 +9,16 @@ use super::{Aspect, MARGIN, PictureScene, Place};
 /// Wavelengths that the wave has run.
 pub(super) fn cycles(frame: &Frame) -> f64 {
     frame.value("period").unwrap_or(0.0)
+}
+
+/// An instant of a wave that moves, in markup, by the wavelengths that it has run.
+pub(crate) fn moving_instant(cycles: f64) -> String {
+    format!("*t*/*T* = {cycles:.2}")
+}
+
+/// An instant of a wave that stands still, in markup.
+pub(crate) fn still_instant(time: f64, units: Units) -> String {
+    format!("*t* = {time:.1} {}", units.time())
 }
 
 /// Lengths that a scale shows \[d\]: the largest that is a modest part of the picture.
@@ -46,13 +56,12 @@ impl Caption {
                 _ => ": not yet".to_owned(),
             };
             vec![
-                format!("*t*/*T* = {:.2}", cycles(frame)),
+                moving_instant(cycles(frame)),
                 place,
                 format!("*J*/*J*_{{max}}{flow}"),
             ]
         } else {
-            let time = format!("*t* = {:.1} {}", frame.time, scene.units.time());
-            vec![time, place]
+            vec![still_instant(frame.time, scene.units), place]
         };
         let mut marks = Vec::new();
         if is_moving && scene.look.aspect == Aspect::Side {

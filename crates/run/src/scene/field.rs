@@ -82,7 +82,10 @@ impl Coloured {
             }
         };
         let label = match field {
-            Field::AxialVelocity => format!("axial velocity along the wave, {}", per("*v_z*")),
+            Field::AxialVelocity => {
+                let way = if is_moving { "wave" } else { "tube" };
+                format!("axial velocity along the {way}, {}", per("*v_z*"))
+            }
             Field::Speed => format!("speed, {}", per("|*v*|")),
             Field::Diameter => "diameter [*d*]".to_owned(),
             Field::AxialDisplacement => "displacement along the wave, Δ*z*/*λ*".to_owned(),

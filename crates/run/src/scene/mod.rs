@@ -15,6 +15,7 @@ use crate::error::RunError;
 use crate::run::Run;
 
 use self::caption::Caption;
+pub(crate) use self::caption::{moving_instant, still_instant};
 use self::field::Coloured;
 pub use self::field::Field;
 
