@@ -149,7 +149,7 @@ impl Axis {
                 least_bare = Some((bare, ticks));
             }
         }
-        let otherwise = || self.linear_ticks(LEAST_LABELS);
+        let otherwise = || with_outer_labels(self.linear_ticks(LEAST_LABELS));
         least_bare.map_or_else(otherwise, |(_, ticks)| ticks)
     }
 
@@ -299,6 +299,19 @@ impl Axis {
         }
         ticks
     }
+}
+
+/// Ticks of which the first and the last label are left.
+fn with_outer_labels(mut ticks: Vec<Tick>) -> Vec<Tick> {
+    let is_labelled = |tick: &Tick| tick.label.is_some();
+    let first = ticks.iter().position(is_labelled);
+    let last = ticks.iter().rposition(is_labelled);
+    for (index, tick) in ticks.iter_mut().enumerate() {
+        if ![first, last].contains(&Some(index)) {
+            tick.label = None;
+        }
+    }
+    ticks
 }
 
 fn labels_of(ticks: &[Tick]) -> usize {
@@ -463,6 +476,14 @@ mod tests {
             let are_apart = places.windows(2).all(|pair| pair[1] - pair[0] >= 15.0);
             assert!(are_apart, "{length}: {places:?}");
         }
+    }
+
+    #[test]
+    fn an_axis_too_short_for_its_labels_keeps_the_outer_ones() {
+        let axis = Axis::new(Scale::Linear, (-0.43, 0.43));
+        let ticks = axis.fitting_ticks(12.0, 0, |_| 9.0).into_iter();
+        let found: Vec<String> = ticks.filter_map(|tick| tick.label).collect();
+        assert_eq!(found, ["\u{2212}0.4", "0.4"]);
     }
 
     #[test]

@@ -87,6 +87,8 @@ const SHORTEST_ROW: f64 = 10.0;
 const BESIDE: f64 = 40.0;
 /// Free space above and below the outermost sphere, as a fraction of the half height of a row.
 const MARGIN: f64 = 0.06;
+/// Least half height of a row as a part of its length: two numbers stand beside it.
+const LEAST_REACH: f64 = 0.02;
 /// Greatest distance of a drawn wall sphere from the plane of the cut, in diameters: half a diameter would leave gaps
 /// where the wall is stretched.
 const SLICE: f64 = 0.75;
@@ -111,6 +113,7 @@ impl SnapshotFigure<'_> {
         let (diameter, _) = extent(parts.iter().map(Part::diameter));
         let (_, longest) = extent(parts.iter().map(|part| part.snapshot.length));
         let row = row_length(longest, self.width.points() - BESIDE, diameter);
+        let reach = reach.max(LEAST_REACH * row);
         let extents: Vec<String> = self.snapshots.iter().map(Snapshot::extent).collect();
         let is_one_extent = extents.windows(2).all(|pair| pair[0] == pair[1]);
         let mut panels = Vec::new();
