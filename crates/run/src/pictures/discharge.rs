@@ -4,12 +4,15 @@ use peristalsis_analysis::number::with_error;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Tint};
 use peristalsis_figures::{Drawing, FigureError};
 
-use super::{HEIGHT, title};
+use super::title;
 use crate::run::Run;
 use crate::scene::units;
 use crate::summary::Discharge;
 
-/// Mass that has left through the outlet, and mass between the ends, against time.
+/// Height of a panel in millimetres.
+const PANEL_HEIGHT: f64 = 28.0;
+
+/// Mass that has left through the outlet, and below it mass between the ends, against time.
 pub(super) fn discharge(run: &Run, discharge: &Discharge) -> Result<Drawing, FigureError> {
     let samples = run.recorder().samples();
     let time: Vec<f64> = samples.iter().map(|it| it.time).collect();
@@ -19,24 +22,23 @@ pub(super) fn discharge(run: &Run, discharge: &Discharge) -> Result<Drawing, Fig
     let (rate, error) = discharge.rate;
     let begin = (1.0 - run.late_fraction()) * last;
     let line = [begin, last].map(|time| discharge.discharged + rate * (time - last));
-    let name = format!("late rate {} *m*/*t*", with_error(rate, error));
-    let panel = ChartPanel::new(
-        &format!("time *t* / {}", units(run.configuration()).time()),
-        "mass / *m*",
-    )
-    .x_range(0.0..=last)
-    .y_range(0.0..)
-    .with(Line::new("discharged", &time, &discharged).tint(Tint::Blue))
-    .with(Line::new("between the ends", &time, &hold_up).tint(Tint::Green))
-    .with(
-        Line::new(&name, &[begin, last], &line)
-            .tint(Tint::Orange)
-            .pattern(Pattern::Dashed),
-    );
-    ChartFigure::new(panel)
+    let unit = units(run.configuration()).time();
+    let name = format!("late rate {} *m*/{unit}", with_error(rate, error));
+    let panel =
+        |label: &str| ChartPanel::new(&format!("time *t* / {unit}"), label).x_range(0.0..=last);
+    let late_rate = Line::new(&name, &[begin, last], &line).tint(Tint::Orange);
+    let panels = [
+        panel("discharged / *m*")
+            .y_range(0.0..)
+            .with(Line::new("", &time, &discharged).tint(Tint::Blue))
+            .with(late_rate.pattern(Pattern::Dashed)),
+        panel("in the tube / *m*").with(Line::new("", &time, &hold_up).tint(Tint::Green)),
+    ];
+    ChartFigure::grid(1, panels)
         .title(&title(run.configuration()))
         .description("Mass that has left through the outlet, and mass in the tube, against time.")
-        .panel_height(HEIGHT)
+        .panel_height(PANEL_HEIGHT)
+        .share_x()
         .legend(LegendPlace::Below)
         .draw()
 }
