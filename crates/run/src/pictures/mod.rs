@@ -246,7 +246,8 @@ fn label(quantity: Quantity) -> String {
 pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
     let flows = run.recorder().waves();
     let waves = run.configuration().tube.waves as usize;
-    let (Some(first), Some(last)) = (flows.first(), flows.last()) else {
+    let last = flows.last().filter(|last| last.period > 0.0);
+    let (Some(first), Some(last)) = (flows.first(), last) else {
         return Err(refused(
             "the run has measured no whole period of its wave yet",
             "let it run for a period at least, with a wave that moves",
