@@ -44,8 +44,8 @@ impl Painter<'_> {
         };
         let text = Text::fitted(&reference.label, LEGEND_SIZE, length - 2.0 * INSET);
         let (long, thick) = (text.width, LEGEND_SIZE);
-        let places = (0..=LABEL_TRIALS).flat_map(|trial| {
-            let share = 1.0 - trial as f64 / LABEL_TRIALS as f64;
+        let shares = || (0..=LABEL_TRIALS).map(|trial| 1.0 - trial as f64 / LABEL_TRIALS as f64);
+        let along_line = shares().flat_map(|share| {
             let along = INSET + share * (length - 2.0 * INSET - long);
             [-LABEL_GAP - thick, LABEL_GAP].map(|beside| {
                 if is_vertical {
@@ -56,6 +56,14 @@ impl Painter<'_> {
                 }
             })
         });
+        // A label along a vertical line crosses many others: it may stand upright beside its line.
+        let upright = shares().filter(|_| is_vertical).flat_map(|share| {
+            let room = frame.height - 2.0 * INSET - thick;
+            let top = frame.bottom() - INSET - share * room - thick;
+            [LABEL_GAP, -LABEL_GAP - long]
+                .map(|beside| Rectangle::new((start.x + beside, top), (long, thick)))
+        });
+        let places = along_line.chain(upright);
         let is_inside = |place: &Rectangle| place.corners().iter().all(|it| frame.holds(*it));
         // Only a frame smaller than its type leaves no place.
         let Some((place, _)) = self.obstacles.freest(places.filter(is_inside)) else {
@@ -64,7 +72,7 @@ impl Painter<'_> {
         self.obstacles.area(place);
         let colour = self.colour(0, reference.look);
         let layer = self.drawing.layer("reference labels", None);
-        if is_vertical {
+        if place.height > place.width {
             let baseline = place.left + ABOVE_BASELINE * LEGEND_SIZE;
             let foot = (baseline, place.bottom());
             layer.text_upward(foot, Anchor::Start, text, colour);
