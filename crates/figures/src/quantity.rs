@@ -52,6 +52,22 @@ impl Units {
         }
     }
 
+    /// Unit of a rate in markup.
+    pub fn rate(self) -> &'static str {
+        match self {
+            Self::Linear => "(*k*/*m*)^{1/2}",
+            Self::Hertz => "*t*^{\\*−1}",
+        }
+    }
+
+    /// Unit of acceleration in markup.
+    pub fn acceleration(self) -> &'static str {
+        match self {
+            Self::Linear => "*kd*/*m*",
+            Self::Hertz => "*d*/*t*^{\\*2}",
+        }
+    }
+
     /// Unit of pressure in markup.
     pub fn pressure(self) -> &'static str {
         match self {

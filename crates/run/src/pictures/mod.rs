@@ -96,7 +96,10 @@ fn title(configuration: &Configuration) -> String {
     );
     let number = || format!("*N* = {}", configuration.grains.number);
     let rest = particular(configuration).unwrap_or_else(number);
-    format!("{control},  *ε\u{307}* = {rate},  {density}{rest}")
+    format!(
+        "{control},  *ε\u{307}* = {rate} {},  {density}{rest}",
+        units(configuration).rate()
+    )
 }
 
 /// Unusual settings of a run: its waveform, its body force.
@@ -108,9 +111,10 @@ fn particular(configuration: &Configuration) -> Option<String> {
         (0.0, 0.0) => short(configuration.axial_body_force()),
         _ => format!("({}, {}, {})", short(x), short(y), short(z)),
     };
+    let unit = units(configuration).acceleration();
     let force = configuration
         .has_body_force()
-        .then(|| format!("*g* = {force}").replace('-', "−"));
+        .then(|| format!("*g* = {} {unit}", force.replace('-', "−")));
     let words: Vec<String> = waveform.into_iter().chain(force).collect();
     (!words.is_empty()).then(|| words.join(",  "))
 }
