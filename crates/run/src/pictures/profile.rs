@@ -9,8 +9,8 @@ use crate::run::Run;
 use crate::scene::units;
 use crate::tables::late_profile;
 
-/// Height of a panel in millimetres.
-const PANEL_HEIGHT: f64 = 19.0;
+/// Height of a panel in millimetres: four numbers stand beside it.
+const PANEL_HEIGHT: f64 = 19.5;
 /// How far a picture of the tube reaches, in its largest radius.
 const REACH: f64 = 1.12;
 
