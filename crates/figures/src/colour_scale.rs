@@ -32,7 +32,7 @@ pub struct ColourScale {
     /// Part of the sequential palette that is used: its lightest end is lost as a line on white.
     pub(crate) reach: f64,
     /// Least and largest of the values that are shown, where some may lie beyond the ends.
-    pub(crate) found: (f64, f64),
+    found: (f64, f64),
 }
 
 /// Width of a bar beside panels.
@@ -75,6 +75,12 @@ impl ColourScale {
     /// This scale in the colours of another palette.
     pub fn palette(mut self, palette: Palette) -> Self {
         self.palette = palette;
+        self
+    }
+
+    /// This scale for values between two: where some lie beyond its ends, the bar says so.
+    pub fn found(mut self, least: f64, largest: f64) -> Self {
+        self.found = (least, largest);
         self
     }
 
@@ -133,6 +139,22 @@ impl ColourScale {
         ticks
     }
 
+    fn ticks_across(&self, width: f64) -> Vec<Tick> {
+        self.ticks(width, MOST_LABELS, |label| {
+            Text::new(label, TICK_SIZE).width + ROOM_BETWEEN_LABELS
+        })
+    }
+
+    /// How far the numbers of a bar across reach over its right end.
+    pub(crate) fn overhang(&self, width: f64) -> f64 {
+        let over = |tick: &Tick| {
+            let half = Text::new(tick.label.as_ref()?, TICK_SIZE).width / 2.0;
+            Some(half - width * (1.0 - self.axis().fraction(tick.value)))
+        };
+        let ticks = self.ticks_across(width);
+        ticks.iter().filter_map(over).fold(0.0, f64::max)
+    }
+
     fn ticks_up(&self, height: f64) -> Vec<Tick> {
         let most = ((height / ROOM_PER_LABEL) as usize).min(MOST_LABELS);
         self.ticks(height, most, |_| ROOM_PER_LABEL - 3.0)
@@ -156,11 +178,8 @@ impl ColourScale {
     ) {
         let layer = drawing.layer("colour bar", None);
         layer.image(Image::of_cells(area, BAR_STEPS, self.steps()));
-        let ticks = self.ticks(area.width, MOST_LABELS, |label| {
-            Text::new(label, TICK_SIZE).width + ROOM_BETWEEN_LABELS
-        });
         let mut segments = Vec::new();
-        for tick in ticks {
+        for tick in self.ticks_across(area.width) {
             let x = area.left + area.width * self.axis().fraction(tick.value);
             let length = if tick.length < MAJOR_TICK { 1.0 } else { 2.0 };
             segments.push([area.bottom(), area.bottom() + length].map(|y| Point::new(x, y)));

@@ -131,7 +131,7 @@ impl PictureFigure<'_> {
         let free_from = self.draw_scale_bar(drawing.layer("scale", None), area, ink);
         if let Some(colours) = self.colours {
             let width = BAR_WIDTH.min(BAR_PART * area.width);
-            let left = area.width - EDGE - 0.5 * TICK_SIZE - width;
+            let left = area.width - EDGE - colours.overhang(width) - width;
             let bar = Rectangle::new((left, area.bottom() + GAP_BELOW), (width, BAR_HEIGHT));
             colours.draw_bar_across(&mut drawing, bar, free_from, ink);
         }

@@ -135,10 +135,10 @@ impl SnapshotFigure<'_> {
             }
         }
         let grains = self.snapshots.iter().flat_map(|snapshot| snapshot.grains);
-        let mut scale =
-            ColourScale::new(self.velocity, -DEEPEST, DEEPEST).palette(Palette::Diverging);
-        // Its ends say so where some of the grains are beyond them.
-        scale.found = extent(grains.map(|grain| grain.axial_velocity));
+        let (least, largest) = extent(grains.map(|grain| grain.axial_velocity));
+        let scale = ColourScale::new(self.velocity, -DEEPEST, DEEPEST)
+            .palette(Palette::Diverging)
+            .found(least, largest);
         ChartFigure::grid(1, panels)
             .title(self.title)
             .description("The tube from the side, its grains coloured by their axial velocity.")

@@ -38,6 +38,8 @@ pub(super) struct Coloured {
     /// Along the wave, turns round the tube counted \[d\].
     origin: Vec<f64>,
     range: (f64, f64),
+    /// Least and largest value in the samples.
+    found: (f64, f64),
     /// Whether the wave moves, so that speeds are told in its speed.
     is_moving: bool,
     label: String,
@@ -101,6 +103,7 @@ impl Coloured {
                 .map(|it| along(first, it, heading))
                 .collect(),
             range: (0.0, 1.0),
+            found: (0.0, 1.0),
             is_moving,
             label,
             usual_pressure: match units {
@@ -112,6 +115,10 @@ impl Coloured {
         for sample in samples {
             found.extend(coloured.values(sample, wall)?);
         }
+        coloured.found = found.iter().fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(least, largest), it| (least.min(*it), largest.max(*it)),
+        );
         coloured.range = coloured.usual_range(found, cycles(last) - cycles(first));
         Ok(coloured)
     }
@@ -160,7 +167,9 @@ impl Coloured {
             Field::Phase => Palette::Cyclic,
             _ => Palette::Sequential,
         };
-        ColourScale::new(&self.label, least, largest).palette(palette)
+        ColourScale::new(&self.label, least, largest)
+            .palette(palette)
+            .found(self.found.0, self.found.1)
     }
 
     /// The field's value of each grain.
