@@ -235,12 +235,19 @@ fn a_static_wave_has_no_speed_to_compare_with_and_no_grains_are_no_failure() {
         .unwrap()
         .draw(&frame)
         .unwrap();
-    assert!(
-        space_time(&run)
-            .unwrap_err()
-            .to_string()
-            .contains("no whole period")
-    );
+    let mut with_grains = Run::new(common::configuration(
+        "frictionless",
+        "drive.strain_rate=0 run.duration=5 grains.number=10",
+    ))
+    .unwrap();
+    while !with_grains.is_complete() {
+        with_grains.advance().unwrap();
+    }
+    assert!(!with_grains.recorder().waves().is_empty());
+    for run in [run, with_grains] {
+        let refusal = space_time(&run).unwrap_err().to_string();
+        assert!(refusal.contains("no whole period"), "{refusal}");
+    }
 }
 
 #[test]
