@@ -103,7 +103,9 @@ impl Contract<'_> {
         let found = item.node.description();
         let place = (&item.origin, &*format!("this is {found}"));
         let message = match (kind_alone(schema), &item.node) {
-            (Some(wanted), Node::Float(_) | Node::Integer(_) | Node::Boolean(_)) => {
+            // A number of an axis may stand nowhere in the text.
+            (Some(wanted), Node::Float(number)) => format!("{path} = {number:?} is not {wanted}"),
+            (Some(wanted), Node::Integer(_) | Node::Boolean(_)) => {
                 format!("{path} = {} is not {wanted}", item.origin.text())
             }
             (Some(wanted), _) => format!("{path} is {found}, not {wanted}"),

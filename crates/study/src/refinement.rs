@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use peristalsis_configuration::document::{Item, Node};
+use peristalsis_configuration::document::Item;
 use peristalsis_configuration::{ConfigurationError, InitialState};
 
 use crate::identity::Identity;
 use crate::plan::{Plan, Point, state_name};
-use crate::specification::{Specification, neat, number};
+use crate::specification::{Specification, neat, number, numeric};
 
 /// Axis along which a change is looked for where the study does not refine one.
 const USUAL_KEY: &str = "drive.width";
@@ -231,7 +231,7 @@ pub fn refine(
                 let model = line.0[0].2;
                 let item = Item {
                     origin: refine.origin.clone(),
-                    node: Node::Float(middle),
+                    node: numeric(middle),
                 };
                 let mut choice = study.choice(&model.rows);
                 choice[setting_of(study, refine.axis)].2 = &item;

@@ -111,7 +111,7 @@ impl Axis {
             let origin = if index == 0 { from } else { to };
             Item {
                 origin: origin.origin.clone(),
-                node: Node::Float(neat(first + (last - first) * along)),
+                node: numeric(neat(first + (last - first) * along)),
             }
         };
         Self {
@@ -181,6 +181,16 @@ pub(crate) fn neat(number: f64) -> f64 {
     format!("{number:.11e}")
         .parse()
         .expect("a number that was written reads back")
+}
+
+/// A number as a person writes it: keys that take whole numbers take no 10.0.
+pub(crate) fn numeric(number: f64) -> Node {
+    let whole = number as i64;
+    if whole as f64 == number && whole.unsigned_abs() < 1 << 53 {
+        Node::Integer(whole)
+    } else {
+        Node::Float(number)
+    }
 }
 
 /// A number of the file.

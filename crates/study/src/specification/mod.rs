@@ -20,7 +20,7 @@ use crate::error::{Result, StudyError};
 use crate::identity::{Record, column_names};
 use crate::plan::{Plan, PlannedRun, state_name};
 use axis::Axis;
-pub(crate) use axis::{neat, number};
+pub(crate) use axis::{neat, number, numeric};
 pub use keys::schema;
 use keys::{Keys, RefineKeys};
 

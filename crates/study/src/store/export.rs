@@ -272,19 +272,36 @@ fn axis_columns(plan: &Plan, runs: &[PlannedRun]) -> Vec<Column> {
             name: setting.key.clone(),
             unit: String::new(),
             description: "key of an axis of the study".to_owned(),
-            values: column_values(&values),
+            values: column_values(&setting.key, &values),
         }
     };
     first.settings.iter().enumerate().map(column).collect()
 }
 
-/// Values as numbers where all are, else as text.
-fn column_values(values: &[&SettingValue]) -> Values {
+/// Values as numbers where all are, whole ones where the key takes no others, else as text.
+fn column_values(key: &str, values: &[&SettingValue]) -> Values {
+    if takes_whole_numbers(key) {
+        let whole = |value: &&SettingValue| match value {
+            SettingValue::Whole(whole) => Some(*whole),
+            _ => None,
+        };
+        if let Some(whole) = values.iter().map(whole).collect() {
+            return Values::Integer(whole);
+        }
+    }
     if values.iter().all(|value| value.number().is_some()) {
         let numbers = values.iter().filter_map(|value| value.number());
         return Values::Real(numbers.collect());
     }
     Values::Text(values.iter().map(ToString::to_string).collect())
+}
+
+/// Whether a key of the configuration takes whole numbers only.
+fn takes_whole_numbers(key: &str) -> bool {
+    let schema = peristalsis_configuration::schema();
+    let place = format!("/properties/{}", key.replace('.', "/properties/"));
+    let found = schema.pointer(&place);
+    found.is_some_and(|found| found["type"] == "integer")
 }
 
 /// The runs of the plan that failed, each with its reason.

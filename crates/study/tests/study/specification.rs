@@ -47,6 +47,27 @@ fn lists_and_ranges_have_the_values_that_a_person_means() {
 }
 
 #[test]
+fn a_range_reaches_keys_that_take_whole_numbers() {
+    let range = |keys: &str| {
+        let text = SMALL.replace("key = \"drive.width\"", "key = \"grains.number\"");
+        text.replace("values = [2.5, 2.8]", keys)
+    };
+    for keys in [
+        "from = 10\nto = 30\nstep = 10",
+        "from = 10\nto = 30\ncount = 3",
+    ] {
+        let plan = plan(&range(keys));
+        let numbers = plan.points().iter().map(|point| &point.settings[0].value);
+        let expected = [10, 20, 30].map(SettingValue::Whole);
+        assert!(numbers.eq(&expected), "{keys}");
+    }
+    refused(
+        &range("from = 10\nto = 11\ncount = 3"),
+        &["grains.number = 10.5 is not a whole number"],
+    );
+}
+
+#[test]
 fn axes_multiply_and_rows_vary_together() {
     let text = format!(
         "{SMALL}
