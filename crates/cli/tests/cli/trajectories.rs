@@ -122,3 +122,18 @@ fn frames_from_the_state_of_a_finished_run() {
     );
     place.refuses("trajectory nowhere", &["nowhere holds no run"]);
 }
+
+#[test]
+fn the_state_alone_of_a_wave_that_stands_still() {
+    let place = Place::new();
+    place.does(
+        "run --preset frictionless --out still drive.strain_rate=0 run.duration=5 grains.number=20",
+    );
+    place
+        .does("trajectory still")
+        .shows(&["1 frame", "from-state/trajectory.gsd"]);
+    place.refuses(
+        "trajectory still --duration 1 --out more",
+        &["the wave stands still"],
+    );
+}

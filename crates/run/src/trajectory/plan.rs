@@ -63,6 +63,7 @@ impl Span {
             Self::Time(time) => Ok(time / configuration.run.time_step),
             Self::Periods(periods) => match configuration.drive.period() {
                 Some(period) => Ok(periods * period / configuration.run.time_step),
+                None if periods == 0.0 => Ok(0.0),
                 None => {
                     let reason = format!("the wave stands still, and {self} last for ever");
                     let help = "give times instead, such as 2.5t";
