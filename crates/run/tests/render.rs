@@ -165,7 +165,6 @@ fn grains_that_flow_against_the_wave_are_blue() {
 fn every_field_colours_the_grains_of_a_run_that_has_it() {
     let settings = "initial.state=jammed grains.number=200";
     let mut run = Run::new(common::configuration("frictional", settings)).unwrap();
-    run.follow_orientations();
     run.advance().unwrap();
     let mut seen = Vec::new();
     for field in [

@@ -208,3 +208,13 @@ fn a_film_that_is_stopped_leaves_no_file() {
     assert_eq!(partial(), 0);
     assert!(!place.path("film.gif").exists());
 }
+
+#[test]
+fn grains_with_friction_are_coloured_by_their_rotation() {
+    let place = Place::new();
+    place.does("run SMALL --out rough contact.kinetic_friction=0.5");
+    let render = "render rough --width 64 --colour angular-velocity";
+    for from in ["", " --from start", " --at 1 --from start"] {
+        place.does(&format!("{render}{from}"));
+    }
+}

@@ -8,6 +8,9 @@ use peristalsis_observe::View;
 
 use crate::run::Run;
 
+/// The orientation that grains begin with.
+const UNTURNED: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+
 /// The spheres of a run as they are, with contacts where they are wanted.
 pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
     let simulation = run.simulation();
@@ -22,13 +25,7 @@ pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
         turns: bodies.turns.clone(),
         velocity: bodies.velocity.iter().map(|v| v.to_array()).collect(),
         diameter: bodies.diameter.clone(),
-        rotation: run.orientations().map(|orientations| Rotation {
-            angular_velocity: bodies.angular_velocity[..bodies.grains]
-                .iter()
-                .map(|omega| omega.to_array())
-                .collect(),
-            orientation: orientations.quaternions().to_vec(),
-        }),
+        rotation: rotation(run),
         contacts: Vec::new(),
         values: values(run),
     };
@@ -43,6 +40,20 @@ pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
         frame.contacts = contacts(simulation);
     }
     frame
+}
+
+/// How the grains turn, where there is friction to turn them. Where a run does not follow that, this frame is the first.
+fn rotation(run: &Run) -> Option<Rotation> {
+    run.configuration().contact.friction.as_ref()?;
+    let bodies = run.simulation().bodies();
+    let turning = &bodies.angular_velocity[..bodies.grains];
+    Some(Rotation {
+        angular_velocity: turning.iter().map(|omega| omega.to_array()).collect(),
+        orientation: match run.orientations() {
+            Some(orientations) => orientations.quaternions().to_vec(),
+            None => vec![UNTURNED; bodies.grains],
+        },
+    })
 }
 
 /// Side of a box about the axis that holds every sphere, with a wall sphere's diameter to spare: the same throughout a

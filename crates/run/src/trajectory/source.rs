@@ -102,7 +102,8 @@ impl FrameSource {
     }
 
     /// The frames that a run goes through on a plan, which must not begin before its present state.
-    pub fn of_run(run: Run, plan: TrajectoryPlan, with_contacts: bool) -> Self {
+    pub fn of_run(mut run: Run, plan: TrajectoryPlan, with_contacts: bool) -> Self {
+        run.follow_orientations();
         Self {
             frames: plan.frames() as usize,
             from: From::Computed {
