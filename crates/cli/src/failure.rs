@@ -261,8 +261,8 @@ fn of_study(error: &StudyError) -> Advice {
         StudyError::Configuration(_)
         | StudyError::Read { .. }
         | StudyError::NoSuchRun { .. }
-        | StudyError::NotRows { .. }
-        | StudyError::Trial(_) => (BAD_INPUT, None),
+        | StudyError::NotRows { .. } => (BAD_INPUT, None),
+        StudyError::Trial { source, .. } => (BAD_INPUT, of_run(source).1),
         error if error.is_closed() => failed(
             "nothing that was finished is lost: make the store writable for this user, or work in a copy of it",
         ),

@@ -29,8 +29,12 @@ pub enum EngineError {
     },
     /// The grains do not fit into the tube.
     #[error(
-        "{grains} grains do not fit: after relaxation their mean overlap is {mean_overlap:.3} d (at most {limit:.3} d is \
-         allowed) and {outside} of them have been pressed out through the wall"
+        "{grains} grains do not fit: {}",
+        if mean_overlap > limit {
+            format!("packed, they overlap by {mean_overlap:.3} d on average, and at most {limit:.3} d is allowed")
+        } else {
+            format!("packing presses {outside} of them out through the wall")
+        }
     )]
     DoesNotFit {
         /// Number of grains.

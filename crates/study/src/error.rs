@@ -96,8 +96,13 @@ pub enum StudyError {
         reason: String,
     },
     /// Some run cannot be estimated.
-    #[error("trial of a run: {0}")]
-    Trial(RunError),
+    #[error("trial of a run ({point}): {source}")]
+    Trial {
+        /// Its settings in words.
+        point: String,
+        /// The fault.
+        source: RunError,
+    },
 }
 
 impl StudyError {

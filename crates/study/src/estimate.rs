@@ -67,9 +67,14 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
     trials.dedup();
     let (mut seconds, mut tried) = (0.0, 0.0);
     for trial in trials {
-        let configuration = &points[trial].configuration;
+        let point = &points[trial];
+        let configuration = &point.configuration;
         // More threads would take more of the processor than one.
-        let estimate = estimate_by(1, configuration, None).map_err(StudyError::Trial)?;
+        let estimate = estimate_by(1, configuration, None);
+        let estimate = estimate.map_err(|source| StudyError::Trial {
+            point: point.in_words(),
+            source,
+        })?;
         seconds += estimate.expected_seconds;
         tried += work(configuration);
     }

@@ -96,7 +96,11 @@ fn several_problems_come_in_one_go() {
 
 #[test]
 fn grains_that_do_not_fit() {
-    let parts = ["grains", "do not fit", "take fewer grains", "grains.number"];
+    let parts = [
+        "grains do not fit: packed, they overlap",
+        "take fewer grains",
+        "grains.number",
+    ];
     for number in ["1500", "4_000_000"] {
         let text = TUBE.replace("volume_fraction = 0.15", &format!("number = {number}"));
         for command in [RUN, CHECK] {
