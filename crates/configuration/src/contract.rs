@@ -30,6 +30,9 @@ pub fn check_against(schema: &Value, table: &Table, problems: &mut Problems) {
 /// Unknown keys for which the nearest known one is looked up.
 const MOST_SUGGESTIONS: usize = 100;
 
+/// Whole numbers up to this one are exact as f64.
+const MOST_EXACT: f64 = (1_u64 << 53) as f64;
+
 /// What a check needs besides the value and its schema.
 struct Contract<'a> {
     /// Full names of all keys, to guess from.
@@ -281,6 +284,8 @@ fn kind_alone(schema: &Value) -> Option<&'static str> {
 fn range_in_words(schema: &Value) -> String {
     let bound = |name: &str, before: &str, after: &str| match schema[name].as_f64() {
         Some(bound) if bound.abs() < 1e6 => format!("{before}{bound}{after}"),
+        // The largest seed is no number of 53 bits.
+        Some(bound) if bound > MOST_EXACT => format!("{before}{}{after}", schema[name]),
         Some(bound) => format!("{before}{bound:e}{after}"),
         None => String::new(),
     };

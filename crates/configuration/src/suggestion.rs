@@ -23,14 +23,14 @@ pub(crate) fn edit_distance(one: &str, other: &str) -> usize {
 
 /// Edits that are still taken for a slip of the pen in a word.
 fn tolerance(word: &str) -> usize {
-    (word.chars().count() / 3).clamp(1, 3)
+    (word.chars().count() / 3).min(3)
 }
 
 /// A word no user meant: longer than any name by far. Distances to it would only cost time.
 const LONGEST_WORD: usize = 64;
 
-/// The known key nearest to an unknown one, if one is near: by its last name, or by words of it, in its own table before
-/// others.
+/// The known key nearest to an unknown one, if one is near: by its last name, or as how one begins or ends, in its own table
+/// before others.
 ///
 /// `path` is the unknown key's full path, `known` the full paths of all keys; or a word and the words that there are.
 pub(crate) fn nearest<'a>(path: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -39,22 +39,23 @@ pub(crate) fn nearest<'a>(path: &str, known: impl IntoIterator<Item = &'a str>) 
     if name.len() > LONGEST_WORD {
         return None;
     }
-    // A key such as contact.stiffness is taken for contact.normal_stiffness.
-    let (part, beginning) = (format!("_{name}"), format!("{name}_"));
-    let distances = known.into_iter().map(|candidate| {
+    let near = known.into_iter().filter_map(|candidate| {
         let (other_table, other_name) = split(candidate);
         let is_elsewhere = table != other_table;
-        let is_part = other_name.ends_with(&part) || other_name.starts_with(&beginning);
-        // In another table than the one that was written every edit counts twice.
+        let edits = edit_distance(name, other_name);
+        // A key such as contact.stiffness is taken for contact.normal_stiffness.
+        let is_part = other_name.starts_with(name) || other_name.ends_with(name);
         let distance = match (is_part, is_elsewhere) {
-            (true, false) => 0,
-            (_, true) if !table.is_empty() => 2 * edit_distance(name, other_name),
-            _ => edit_distance(name, other_name),
+            (true, false) => edits.min(1),
+            // In another table than the one that was written every edit counts twice.
+            (_, true) if !table.is_empty() => 2 * edits,
+            _ => edits,
         };
-        (distance, is_elsewhere, candidate)
+        let is_near = distance <= tolerance(name);
+        is_near.then_some((is_elsewhere, distance, edits, candidate))
     });
-    let near = distances.filter(|(distance, ..)| *distance <= tolerance(name));
-    let nearest = near.min_by_key(|(distance, is_elsewhere, _)| (*distance, *is_elsewhere));
+    let nearest =
+        near.min_by_key(|(is_elsewhere, distance, edits, _)| (*is_elsewhere, *distance, *edits));
     nearest.map(|(.., candidate)| candidate)
 }
 
@@ -76,6 +77,10 @@ mod tests {
             "drive.width",
             "tube.waves",
             "wall.drag",
+            "tube.rings_per_wave",
+            "tube.wavelength",
+            "inlet.length",
+            "drive.at",
             "drive.strain_rate",
             "run.seed",
         ];
@@ -84,7 +89,10 @@ mod tests {
             ("width", Some("drive.width")),
             ("tube.strain_rat", Some("drive.strain_rate")),
             ("drive.rate", Some("drive.strain_rate")),
+            ("tube.wave", Some("tube.waves")),
+            ("tube.length", Some("tube.wavelength")),
             ("tube.colour", None),
+            ("a", None),
             ("drive.feed", None),
             ("feed", Some("run.seed")),
         ] {

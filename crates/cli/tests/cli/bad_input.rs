@@ -73,6 +73,9 @@ fn a_wrong_override_is_its_own_place() {
     let place = Place::new();
     for (setting, part) in [
         ("drive.widht=2", "did you mean drive.width?"),
+        ("tube.wave=2", "did you mean tube.waves?"),
+        ("a.b.c=2", "known here: "),
+        ("run.seed=-1", "at most 9223372036854775807"),
         ("drive.width=3.01", "2 tube.radius = 3"),
         ("drive.width", "key=value"),
     ] {
