@@ -418,6 +418,7 @@ fn threads(text: &str) -> Result<Threads, String> {
 
 fn seeds(text: &str) -> Result<Seeds, String> {
     let misread = || "seeds such as 1..10, both ends among them, or 1,2,5".to_owned();
+    let too_many = || format!("at most {MOST_SEEDS} seeds");
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| misread());
     let mut seeds = Vec::new();
     for part in text.split(',') {
@@ -425,8 +426,11 @@ fn seeds(text: &str) -> Result<Seeds, String> {
             Some((from, to)) => (number(from)?, number(to.trim_start_matches('='))?),
             None => (number(part)?, number(part)?),
         };
-        if from > to || to - from >= MOST_SEEDS as u64 {
+        if from > to {
             return Err(misread());
+        }
+        if to - from >= MOST_SEEDS as u64 {
+            return Err(too_many());
         }
         seeds.extend(from..=to);
     }
@@ -435,7 +439,7 @@ fn seeds(text: &str) -> Result<Seeds, String> {
     seeds.dedup();
     match seeds.len() {
         number if number < given => Err("each seed once".to_owned()),
-        number if number > MOST_SEEDS => Err(format!("at most {MOST_SEEDS} seeds")),
+        number if number > MOST_SEEDS => Err(too_many()),
         _ => Ok(Seeds(seeds)),
     }
 }
@@ -461,6 +465,8 @@ mod tests {
         ] {
             assert!(read(text).is_err(), "{text}");
         }
+        let refused = read("1..1000000000").unwrap_err();
+        assert!(refused.contains("at most"), "{refused}");
     }
 
     #[test]

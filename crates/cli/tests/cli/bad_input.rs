@@ -76,6 +76,7 @@ fn a_wrong_override_is_its_own_place() {
         ("tube.wave=2", "did you mean tube.waves?"),
         ("a.b.c=2", "known here: "),
         ("run.seed=-1", "at most 9223372036854775807"),
+        ("grains.diameter_max=1000", "or smaller grains"),
         ("drive.width=3.01", "2 tube.radius = 3"),
         ("drive.width", "key=value"),
     ] {

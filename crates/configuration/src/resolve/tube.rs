@@ -123,10 +123,10 @@ pub(super) fn check_length(tube: &Tube, reach: f64, context: &mut Context<'_>) {
     }
     context.refuse::<()>(
         ProblemKind::Inconsistent,
-        &["tube.wavelength", "tube.waves"],
+        &["tube.wavelength", "tube.waves", "grains.diameter_max"],
         format!(
             "a tube that closes on itself: its length L = waves * wavelength = {length} is not above twice the reach of a contact, {least}"
         ),
-        format!("more waves or a longer wavelength: L above {least}"),
+        format!("more waves or a longer wavelength, L above {least}; or smaller grains"),
     );
 }

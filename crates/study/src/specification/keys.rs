@@ -12,7 +12,7 @@ use crate::identity::Record;
 /// An ensemble of simulations over a grid of parameters.
 #[derive(Deserialize, JsonSchema)]
 pub(super) struct Keys {
-    /// Short name of the study, of letters, digits, - and _: exported files are called by it.
+    /// Short name of the study, of the letters a to z and A to Z, digits, - and _: exported files are called by it.
     pub(super) name: String,
     /// What the study is about, in one line.
     pub(super) title: Option<String>,

@@ -267,7 +267,7 @@ fn check_keys(table: &Table, problems: &mut Problems) {
         let problem = Problem::new(ProblemKind::OutOfRange, message)
             .key("name")
             .at(&entry.item.origin, "this name")
-            .help("one to a hundred letters, digits, - and _: exported files are called by it");
+            .help("one to a hundred of the letters a to z and A to Z, digits, - and _: exported files are called by it");
         problems.push(problem);
     }
     let conflicts = [

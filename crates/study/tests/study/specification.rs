@@ -160,7 +160,7 @@ fn keys_of_the_study_are_checked_like_those_of_a_configuration() {
     refused_with(
         "\"small\"",
         "\"../small\"",
-        &["study.toml:2:8", "letters, digits"],
+        &["study.toml:2:8", "letters a to z"],
     );
     refused_with(
         "\"frictionless\"",
