@@ -257,12 +257,17 @@ impl RunFolder {
         run.write_checkpoint(&self.file(STATE))
     }
 
-    /// Writes tables, state, summary and figures; the summary after the tables, so that its presence says they are there.
-    /// A time series in CSV that is there is renewed.
+    /// Writes tables, state, summary and figures, and answers the files of figures; the summary after the tables, so that its
+    /// presence says they are there. A time series in CSV that is there is renewed.
     ///
     /// # Errors
     /// The first file that cannot be written or drawn.
-    pub fn finish(&self, run: &Run, summary: &Summary, written: Written) -> Result<(), RunError> {
+    pub fn finish(
+        &self,
+        run: &Run,
+        summary: &Summary,
+        written: Written,
+    ) -> Result<Vec<PathBuf>, RunError> {
         let timeseries = timeseries_table(run)?;
         parquet::write(&self.file(TIMESERIES), &timeseries)?;
         let text = self.file(TIMESERIES_CSV);
@@ -276,7 +281,7 @@ impl RunFolder {
         }
         self.save_state(run)?;
         atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
-        self.draw(run, summary).map(drop)
+        self.draw(run, summary)
     }
 
     /// Draws the figures of the run over those that there are, and answers their files. A figure that the run no longer has

@@ -46,6 +46,9 @@ fn no_grains_one_grain_one_wave_and_less_than_a_period() {
         let table = place.path(folder).join("timeseries.parquet");
         assert!(table.is_file(), "{folder}");
     }
+    place
+        .does("run SMALL --out bare grains.number=0")
+        .says(&["no grains to draw: the run has no figures"]);
     for folder in ["grain", "wave"] {
         assert!(place.path(folder).join("flow.svg").is_file(), "{folder}");
     }

@@ -61,7 +61,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     // Where the disk is full, what could not be written first is what to speak of.
     if !matches!(outcome.ending, Ending::Unwritten(_)) {
-        outcome.finished?;
+        let figures = outcome.finished?;
+        if figures.is_empty() {
+            tell("there are no grains to draw: the run has no figures".to_owned());
+        }
     }
     let place = work.folder.path().display();
     match outcome.ending {

@@ -193,7 +193,7 @@ fn replica(
         return Ok(Outcome {
             ending: Ending::Complete,
             summary,
-            finished: Ok(()),
+            finished: Ok(Vec::new()),
         });
     }
     compute_with(arguments, &mut run, free)?;

@@ -1,6 +1,6 @@
 //! The work of a run: to its end or to a signal, with everything saved.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peristalsis_run::{
@@ -27,8 +27,8 @@ pub(super) enum Ending {
 pub(super) struct Outcome {
     pub(super) ending: Ending,
     pub(super) summary: Summary,
-    /// Whether its results could be written.
-    pub(super) finished: Result<(), RunError>,
+    /// The figures, if its results could be written.
+    pub(super) finished: Result<Vec<PathBuf>, RunError>,
 }
 
 /// A run and where it leaves what it finds.
