@@ -48,12 +48,15 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
     });
     let efficiency = fluid.efficiency();
     let efficiency = efficiency.map_or("does not pump".to_owned(), |value| format!("{value:.4}"));
+    let stopping = match fluid.zero_flow_pressure() {
+        pressure if pressure.is_finite() => format!("flow stops at {pressure:.5}"),
+        _ => "no pressure stops the flow".to_owned(),
+    };
     print(&format!(
-        "phi = b/a         {:.5}\npressure rise     P = {} (flow stops at {:.5})\nflow rate         Q = {:.5} pi a^2 c\n\
+        "phi = b/a         {:.5}\npressure rise     P = {} ({stopping})\nflow rate         Q = {:.5} pi a^2 c\n\
          J/Jmax            {:.5}\nefficiency        {efficiency}\ntrapping          {trapping}\nreflux            {reflux}\n",
         fluid.amplitude_ratio(),
         fluid.pressure(),
-        fluid.zero_flow_pressure(),
         fluid.flow_rate(),
         fluid.flow_rate_ratio(),
     ))

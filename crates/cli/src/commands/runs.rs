@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::run::{RUNS, measured};
 use crate::arguments::RunsArguments;
-use crate::commands::{print, print_json};
+use crate::commands::{print, print_json, rounded};
 use crate::failure::Failure;
 
 pub(crate) fn runs(arguments: &RunsArguments) -> Result<ExitCode, Failure> {
@@ -152,7 +152,7 @@ fn table(runs: &[Value]) -> String {
     let headings = [
         "run",
         "grains",
-        "rate",
+        "rate, 1/t",
         "width or force",
         "periods",
         "status",
@@ -191,6 +191,7 @@ fn row(run: &Value) -> [String; 9] {
     }
     let number = |key: &str| run[key].as_f64();
     let plain = |key: &str| number(key).map_or("–".to_owned(), |it| it.to_string());
+    let few_digits = |key: &str| number(key).map_or("–".to_owned(), rounded);
     let error = number("flow_rate_ratio_error").unwrap_or(f64::NAN);
     let flow = number("flow_rate_ratio").map_or("–".to_owned(), |ratio| measured((ratio, error)));
     let done = |done: &str, asked: &str, unit: &str| {
@@ -203,10 +204,10 @@ fn row(run: &Value) -> [String; 9] {
     [
         folder,
         plain("grains"),
-        plain("strain_rate"),
+        few_digits("strain_rate"),
         format!(
             "{} {}",
-            plain("amplitude"),
+            few_digits("amplitude"),
             run["drive"].as_str().unwrap_or_default()
         ),
         match number("periods_asked") {

@@ -109,6 +109,10 @@ fn the_newtonian_fluid() {
     place
         .does("newtonian --width 2")
         .shows(&["0.35840", "a bolus on the axis"]);
+    // A tube that closes.
+    place
+        .does("newtonian --width 0")
+        .shows(&["(no pressure stops the flow)"]);
     for width in ["4", "-1", "nan"] {
         let call = format!("newtonian --width={width}");
         place.refuses(&call, &["width", "0 <= width <= 2 radius"]);

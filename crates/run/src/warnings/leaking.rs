@@ -40,11 +40,17 @@ pub(super) fn warning(
     });
     let part = parts.into_iter().fold(0.0, f64::max);
     let message = format!(
-        "a grain as fast as the wave has {part:.2} times the energy to pass between the wall's spheres where the tube is \
+        "a grain as fast as the wave has {} times the energy to pass between the wall's spheres where the tube is \
          widest: from about {LEAKING_ENERGY} times on grains escape (`escaped` counts them); take more spheres \
-         per ring and more rings per wave, or a lower drive.strain_rate"
+         per ring and more rings per wave, or a lower drive.strain_rate",
+        two_digits(part)
     );
     (part > LEAKING_ENERGY).then_some(Warning { key, message })
+}
+
+/// A number with two significant digits.
+fn two_digits(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 /// That a table of wall spheres leaves a stretch of the tube without any.
@@ -125,6 +131,14 @@ mod tests {
             sphere_diameter: 1.0,
             staggered: true,
         }
+    }
+
+    #[test]
+    fn energies_have_two_digits() {
+        assert_eq!(
+            [12302.02, 1.234, 0.61].map(two_digits),
+            [12000.0, 1.2, 0.61]
+        );
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The results of a run, in words.
 
-use peristalsis_analysis::number::{known_error, plain, with_error};
+use peristalsis_analysis::number::{known_error, with_error};
 use peristalsis_configuration::Units;
 use peristalsis_reproduce::report::plain_text;
 use peristalsis_run::{Discharge, Pumping, Run, Summary};
@@ -61,11 +61,10 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         // The load of a fluid counts against its viscosity, which grains do not have.
         let is_loaded = summary.pumping.is_some();
         let load = if is_loaded { " without load" } else { "" };
-        let newtonian = measured((newtonian, f64::NAN));
+        let newtonian = number(newtonian);
         // Whoever has a real tube knows its clear bore, not where spheres stand for its wall.
         let clear_bore = clear_bore.filter(|_| configuration.units.is_some());
-        let clear_bore =
-            clear_bore.map(|it| format!("; in the clear bore {}", measured((it, f64::NAN))));
+        let clear_bore = clear_bore.map(|it| format!("; in the clear bore {}", number(it)));
         let clear_bore = clear_bore.unwrap_or_default();
         flow.push_str(&format!(
             " (a Newtonian fluid{load}: {newtonian}{clear_bore})"
@@ -87,7 +86,7 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         );
         let load = match in_si {
             (Some(rise), Some(power)) => {
-                let [rise, power] = [rise, power].map(|value| plain_text(&plain(value)));
+                let [rise, power] = [rise, power].map(number);
                 format!("{rise} Pa over a wavelength: useful power {power} W")
             }
             _ => format!(
@@ -107,7 +106,6 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         summary.in_si(summary.wall_pressure, Units::pressure),
         summary.in_si(summary.wall_pressure_largest, Units::pressure),
     ) {
-        let number = |value| plain_text(&plain(value));
         let torque = summary.wall_torque.map(|(torque, _)| torque);
         let torque = torque.and_then(|torque| summary.in_si(torque, Units::energy));
         let torque = torque.map(|it| format!(" (torque {} N m at a wave a turn)", number(it)));
@@ -169,7 +167,12 @@ pub(crate) fn measured((value, error): (f64, f64)) -> String {
     plain_text(&with_error(value + 0.0, error)).replace('−', "-")
 }
 
-/// The same in SI, or else in the units of the run.
+/// A number without an error.
+fn number(value: f64) -> String {
+    measured((value, f64::NAN))
+}
+
+/// A number with its error in SI, or else in the units of the run.
 fn told(
     summary: &Summary,
     pair: (f64, f64),
