@@ -47,6 +47,9 @@ pub(crate) enum Failure {
     /// A frame of a run's trajectory cannot be written.
     #[error("the run was stopped, since its trajectory cannot be written: {source}")]
     Trajectory { folder: PathBuf, source: RunError },
+    /// What a run has found cannot be written.
+    #[error("{source}")]
+    Results { folder: RunFolder, source: RunError },
     /// A study or its store.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -123,6 +126,8 @@ impl Failure {
                 "nothing that was measured is lost: make room, then go on with: peristalsis run --resume {}",
                 folder.display()
             )),
+            Self::Results { folder, source: RunError::Format(_) } => failed(unwritten(folder)),
+            Self::Results { source, .. } => of_run(source),
             Self::Study(error) => of_study(error),
             Self::Claim(error) => of_claim(error),
             Self::OtherRows { .. } => (
@@ -191,6 +196,19 @@ const FEWER_GRAINS: &str = "take fewer grains (grains.number, grains.volume_frac
                             tube (drive.width, tube.radius)";
 const FOREIGN_FRAMES: &str = "put its files back, or go on without: move the folder's trajectory.toml and trajectory files away";
 const MEND: &str = "nothing that was finished is lost: mend the disk and call again";
+
+/// What to do about results that could not all be written.
+fn unwritten(folder: &RunFolder) -> String {
+    let path = folder.path().display();
+    match folder.has_summary() {
+        true => format!(
+            "the tables are there: make room, then draw the figures with: peristalsis figures {path}"
+        ),
+        false => format!(
+            "make room, then go on from the last saved state with: peristalsis run --resume {path}"
+        ),
+    }
+}
 
 fn of_run(error: &RunError) -> Advice {
     match error {

@@ -175,7 +175,7 @@ fn a_disk_that_fills_while_results_are_written() {
     // Room for the configuration, not for the tables.
     let outcome = with_small_files(&place, 8, "run SMALL --out results")
         .expect_code(1)
-        .says(&["error:", "results"]);
+        .says(&["error:", "results", "make room", "run --resume results"]);
     assert!(!outcome.message().contains("written to"));
     let left: Vec<_> = place.inventory().into_keys().collect();
     // Whole files or none: no summary says that there are tables, nothing partial is left.
@@ -186,6 +186,8 @@ fn a_disk_that_fills_while_results_are_written() {
         "{left:?}"
     );
     assert!(place.path("results/config.toml").is_file());
+    place.does("run --resume results");
+    assert!(place.path("results/summary.json").is_file());
 }
 
 #[cfg(unix)]

@@ -61,7 +61,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     // Where the disk is full, what could not be written first is what to speak of.
     if !matches!(outcome.ending, Ending::Unwritten(_)) {
-        let figures = outcome.finished?;
+        let figures = outcome.finished.map_err(|source| Failure::Results {
+            folder: work.folder.clone(),
+            source,
+        })?;
         if figures.is_empty() {
             tell("there are no grains to draw: the run has no figures".to_owned());
         }
@@ -224,7 +227,10 @@ fn go_on_in(
 fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Result<Run, Failure> {
     let length = match arguments.configuration.length() {
         Some(length) => length,
-        None if run.is_complete() => {
+        // A full disk may have taken what comes after the state.
+        None if run.is_complete()
+            && (source.is_file() || RunFolder::named(source).has_summary()) =>
+        {
             let (folder, reason) = (source.to_owned(), "it is complete".to_owned());
             return Err(RunError::NothingToResume { folder, reason }.into());
         }
