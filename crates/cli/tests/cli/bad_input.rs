@@ -76,13 +76,16 @@ fn a_wrong_override_is_its_own_place() {
         ("tube.wave=2", "did you mean tube.waves?"),
         ("a.b.c=2", "known here: "),
         ("run.seed=-1", "at most 9223372036854775807"),
-        ("grains.diameter_max=1000", "or smaller grains"),
         ("drive.width=3.01", "2 tube.radius = 3"),
         ("drive.width", "key=value"),
     ] {
         let call = format!("run SMALL --out results --set={setting}");
         place.refuses(&call, &[&format!("--set {setting}"), part]);
     }
+    place.refuses(
+        "check --preset frictionless grains.diameter_max=1000",
+        &["--set grains.diameter_max=1000", "or smaller grains"],
+    );
     assert!(place.inventory().is_empty());
 }
 
@@ -100,12 +103,16 @@ fn several_problems_come_in_one_go() {
 
 #[test]
 fn grains_that_do_not_fit() {
-    let parts = [
-        "grains do not fit: packed, they overlap",
-        "take fewer grains",
-        "grains.number",
-    ];
-    for number in ["1500", "4_000_000"] {
+    for (number, reason) in [
+        ("1500", "packing presses"),
+        ("4_000_000", "packing is not tried"),
+    ] {
+        let parts = [
+            "grains do not fit: ",
+            reason,
+            "take fewer grains",
+            "grains.number",
+        ];
         let text = TUBE.replace("volume_fraction = 0.15", &format!("number = {number}"));
         for command in [RUN, CHECK] {
             refused(command, text.as_bytes(), &parts);
