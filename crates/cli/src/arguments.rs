@@ -104,7 +104,7 @@ pub(crate) struct RunArguments {
     /// Folder for the results; it must not hold a run. Unless given: a new one, runs/NAME-1, runs/NAME-2, ...
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Number of threads, or auto: as many as pay for the number of grains. Results do not depend on it.
+    /// Number of threads, or auto: as many as pay for the number of moving spheres. Results do not depend on it.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
     pub(crate) threads: Threads,
     /// Instruction set; the default is the widest of this machine. Results do not depend on it.
@@ -207,7 +207,7 @@ pub(crate) struct ViewArguments {
     /// Folder for the states that you save on the page.
     #[arg(long, value_name = "DIR", default_value = "saved-states")]
     pub(crate) saves: PathBuf,
-    /// Number of threads, or auto: as many as pay for the number of grains. Results do not depend on it.
+    /// Number of threads, or auto: as many as pay for the number of moving spheres. Results do not depend on it.
     #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
     pub(crate) threads: Threads,
 }

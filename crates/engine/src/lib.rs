@@ -25,7 +25,7 @@ pub use bodies::{Bodies, Sphere};
 pub use ends::{Ends, OpenEnds, Passages, Passed, STEPS_PER_LOOK, TransitTimes};
 pub use error::EngineError;
 pub use fast::machine::Instructions;
-pub use fast::threads::{processors, threads_that_pay};
+pub use fast::threads::{SPHERES_OF_A_THREAD, processors, threads_that_pay};
 pub use integrate::Past;
 pub use ledger::{Ledger, Tally};
 pub use parameters::{Integrator, Kernel, Parameters};

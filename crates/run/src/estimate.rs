@@ -30,10 +30,10 @@ const LEAST_STEPS: u64 = 100;
 const WALL_SPHERES_OF_A_GRAIN: f64 = 20.0;
 /// Bytes of the program itself with its figures.
 const BYTES_OF_PROGRAM: f64 = 3e7;
-/// Bytes of a smooth grain in a prescribed tube.
-const BYTES_OF_GRAIN: f64 = 400.0;
+/// Bytes of a smooth grain in a prescribed tube, at most: while the grains of a dense tube are packed.
+const BYTES_OF_GRAIN: f64 = 2000.0;
 /// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered.
-const BYTES_OF_ROUGH_GRAIN: f64 = 2000.0;
+const BYTES_OF_ROUGH_GRAIN: f64 = 4000.0;
 
 /// A run before it runs.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -42,6 +42,8 @@ pub struct Estimate {
     pub grains: u64,
     /// Spheres of the wall.
     pub wall_spheres: u64,
+    /// Grains, and spheres of an elastic wall.
+    pub moving_spheres: u64,
     /// rho = N/(6 a^2 L), grain volumes averaged.
     pub volume_fraction: f64,
     /// n = N d*^3/(pi a^2 L).
@@ -85,7 +87,7 @@ pub struct Estimate {
     /// The reason why this run needs the reference kernel, if it does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reference_only: Option<&'static str>,
-    /// Bytes of memory, about.
+    /// Bytes of memory, at most, about.
     pub memory_bytes: f64,
     /// The size of the trajectory, if one is wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -138,6 +140,7 @@ pub fn estimate_by(
     let si = configuration.units.as_ref();
     Ok(Estimate {
         grains: configuration.grains.number,
+        moving_spheres: moving_spheres(configuration),
         wall_spheres: configuration.tube.wall_spheres(),
         volume_fraction: configuration.volume_fraction(),
         number_density: configuration.number_density(),
@@ -189,7 +192,7 @@ pub fn restitution_at_wave_speed(configuration: &Configuration) -> f64 {
     configuration.contact.normal.rebound(impact).restitution
 }
 
-/// Bytes that a run takes, about: as measured of runs with many spheres and of runs with many samples.
+/// Bytes that a run takes at most, about: as measured of runs with many spheres and of runs with many samples.
 fn memory(configuration: &Configuration) -> f64 {
     let waves = configuration.run.periods.unwrap_or(0.0) * f64::from(configuration.tube.waves);
     let samples = configuration.run.samples as f64;

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use peristalsis_configuration::Kernel;
+use peristalsis_engine::{SPHERES_OF_A_THREAD, processors};
 use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
@@ -135,12 +136,18 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         },
     };
     lines.push(format!("kernel            {kernel}"));
+    let why = if estimate.reference_only.is_some() || estimate.kernel == Kernel::Reference {
+        "the reference kernel takes no more".to_owned()
+    } else {
+        format!(
+            "one for each {SPHERES_OF_A_THREAD} of {} moving spheres, on {}",
+            estimate.moving_spheres,
+            counted(processors(), "processor")
+        )
+    };
+    lines.push(format!("threads           {}: {why}", estimate.threads));
     lines.push(format!(
-        "threads           {}, as many as pay here for its size",
-        estimate.threads
-    ));
-    lines.push(format!(
-        "memory            about {}",
+        "memory            at most some {}",
         size(estimate.memory_bytes as u64)
     ));
     if let Some(trajectory) = &estimate.trajectory {

@@ -13,7 +13,7 @@ use crate::fast::machine::{Apart, Team};
 use crate::parameters::Kernel;
 
 /// Moving spheres that a thread must have to itself to pay: some 0.1 ms of work a step, as measured with two (BENCHMARKS.md).
-const SPHERES_OF_A_THREAD: usize = 2_000;
+pub const SPHERES_OF_A_THREAD: usize = 2_000;
 
 /// Number of threads that pay for `spheres` moving spheres on `processors` free processors; 1 for the reference kernel.
 pub fn threads_that_pay(kernel: Kernel, spheres: usize, processors: usize) -> usize {

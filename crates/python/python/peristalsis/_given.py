@@ -11,14 +11,16 @@ import numpy as np
 from ._arrays import Array
 
 
-def whole(name: str, value: Any, least: int) -> int:
-    """A whole number from `least` on."""
+def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
+    """A whole number from `least` on, to `most` if there is one."""
     try:
         number = operator.index(value)
     except TypeError:
         raise TypeError(f"{name} is a whole number, not {value!r}") from None
     if number < least:
         raise ValueError(f"{name} is {least} or more, not {number}")
+    if most is not None and number > most:
+        raise ValueError(f"{name} is {most} or less, not {number}")
     return number
 
 

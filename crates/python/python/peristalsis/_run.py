@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from ._types import RunSummary
 
 
-def run(config: Mapping[str, Any]) -> RunSummary:
+def run(config: Mapping[str, Any], threads: int | None = None) -> RunSummary:
     """Run a configuration to its end and answer its summary.
 
     Function, argument and answer can be pickled, so that replicates go through `concurrent.futures`, joblib, Dask or Ray
@@ -24,6 +24,8 @@ def run(config: Mapping[str, Any]) -> RunSummary:
     config : mapping
         ``preset`` (a name) or ``file`` (a path), and keywords, dotted keys or sections as of `Simulation.preset`; or a
         `Configuration`.
+    threads : int, optional
+        Threads of the engine, as of `Simulation.run`: 1 where each core has a process of its own.
 
     Returns
     -------
@@ -46,7 +48,7 @@ def run(config: Mapping[str, Any]) -> RunSummary:
     """
     if isinstance(config, Configuration):
         simulation = Simulation(config)
-        simulation.run()
+        simulation.run(threads=threads)
         return cast("RunSummary", {"config": config.to_dict(), **simulation.summary()})
     of_kind("config", config, Mapping, "a mapping with preset or file, or a peristalsis.Configuration")
     settings = dict(config)
@@ -59,5 +61,5 @@ def run(config: Mapping[str, Any]) -> RunSummary:
         simulation = Simulation.preset(preset, dotted, **settings)
     else:
         simulation = Simulation.from_file(file, dotted, **settings)
-    simulation.run()
+    simulation.run(threads=threads)
     return cast("RunSummary", {"config": dict(config), **simulation.summary()})

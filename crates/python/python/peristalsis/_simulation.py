@@ -97,7 +97,8 @@ class Simulation(Made):
         writers : iterable of Writer, optional
             Files that get frames during this run; those of `add_writer` get theirs as well.
         threads : int, optional
-            Threads of the engine; as many as pay for the number of grains unless given. They change no bit.
+            Threads of the engine, 1024 at most; as many as pay for the number of moving spheres unless given. They change no
+            bit.
 
         Raises
         ------
@@ -195,7 +196,7 @@ class Simulation(Made):
         if not self._running.acquire(blocking=False):
             raise RuntimeError("this simulation is running already")
         try:
-            self._run.compute_with(None if threads is None else whole("threads", threads, 1))
+            self._run.compute_with(None if threads is None else whole("threads", threads, 1, 1024))
             files = list(dict.fromkeys([*self._writers, *listed(writers)]))
             called: list[Trigger | Writer] = [*triggers(callback, each, self.steps), *files]
             for writer in files:

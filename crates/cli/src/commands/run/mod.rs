@@ -111,8 +111,16 @@ fn compute_with(arguments: &RunArguments, run: &mut Run, processors: usize) -> R
         static SAID: Once = Once::new();
         SAID.call_once(|| {
             say(
-                "--threads changes nothing here: the reference kernel (run.kernel) computes with one",
+                "--threads changes nothing here: the reference kernel computes with one (check says why it is needed)",
             );
+        });
+    } else if threads > processors {
+        static SAID: Once = Once::new();
+        SAID.call_once(|| {
+            say(&format!(
+                "{threads} threads wait for each other on {}: fewer are faster",
+                counted(processors, "processor")
+            ));
         });
     }
     Ok(run.compute_with(instructions, threads)?)

@@ -129,7 +129,7 @@ fn check_tells_restitution_contacts_memory_and_packing_in_rounded_numbers() {
         "4988 t: 20 periods of 249.4 t",
         "restitution       0.",
         "steps\n",
-        "memory            about",
+        "memory            at most some",
         "of packing",
     ]);
     let report = place.does(&format!("{check} --json")).json();
