@@ -157,6 +157,7 @@ def ramp(
     threshold: float,
     back: bool,
     shown: Shown,
+    threads: int | None,
 ) -> Loop:
     """As `Simulation.ramp`, over given levels of so many periods each."""
     course = [("there", float(value)) for value in values]
@@ -169,7 +170,8 @@ def ramp(
             # A doubt of one level may be none of the whole, such as a threshold that is crossed later.
             steps = simulation._steps_of(periods, None)
             # To the end of a sample, with which the configuration of the whole course ends, too.
-            simulation._step(steps + -(simulation.steps + steps) % simulation._run.steps_per_sample)
+            steps += -(simulation.steps + steps) % simulation._run.steps_per_sample
+            simulation._step(steps, threads=threads)
             found.append(_late(simulation, periods, settle))
             display.update(number + 1)
     tell(simulation.warnings, simulation._told)

@@ -237,6 +237,7 @@ class Simulation(Made):
         settle: float = 0.5,
         threshold: float = 0.5,
         progress: Shown = False,
+        threads: int | None = None,
     ) -> Loop:
         """Lead a parameter of the drive from one value to another level by level, and back, and measure J/Jmax at each.
 
@@ -259,6 +260,8 @@ class Simulation(Made):
             J/Jmax whose crossing counts as a transition.
         progress : bool or "logging"
             As in `run`, level by level.
+        threads : int, optional
+            As in `run`.
 
         Returns
         -------
@@ -294,7 +297,7 @@ class Simulation(Made):
         values = np.linspace(start, stop, levels)
         if not np.isfinite(values).all() or (parameter == "strain_rate" and not (values > 0).all()):
             raise ValueError(f"{parameter} cannot be led from {start} to {stop}")
-        return ramp(self, parameter, values, periods / levels, settle, threshold, back, progress)
+        return ramp(self, parameter, values, periods / levels, settle, threshold, back, progress, threads)
 
     # In words
 

@@ -675,7 +675,7 @@ class Summary(TypedDict):
     front_tangential_force_error: float
     """its standard error [m d/t^2]"""
     wall_pressure: float
-    """late mean pressure on the wall [m/(d t^2)]"""
+    """late mean pressure on the wall, each bin of the profile alike [m/(d t^2)]"""
     wall_pressure_largest: float
     """largest late mean pressure on the wall over the phases of the wave [m/(d t^2)]"""
     contact_force_99: float | None

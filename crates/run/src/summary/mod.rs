@@ -71,7 +71,7 @@ pub struct Summary {
     pub pumping: Option<Pumping>,
     /// Discharge of an open tube; `None` for a periodic tube.
     pub discharge: Option<Discharge>,
-    /// Late mean of the pressure on the wall \[m/(d t^2)\].
+    /// Late mean of the pressure on the wall, each bin of the profile alike \[m/(d t^2)\].
     pub wall_pressure: f64,
     /// Late mean of the pressure on the wall in the bin of the profile where it is largest \[m/(d t^2)\].
     pub wall_pressure_largest: f64,

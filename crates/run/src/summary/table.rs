@@ -150,7 +150,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("narrow_wall_velocity", "d/t", "late mean axial velocity of the wall's spheres there; 0 for a prescribed wall", Measured(|s| s.narrow.wall_velocity)),
     result("front_normal_force", "m d/t^2", "part of wall_normal_force in the front of the wave, from its narrowest place to the widest one ahead", Measured(|s| s.front.normal_force)),
     result("front_tangential_force", "m d/t^2", "part of wall_tangential_force in the front of the wave", Measured(|s| s.front.tangential_force)),
-    result("wall_pressure", "m/(d t^2)", "late mean pressure on the wall", Real(|s| s.wall_pressure)),
+    result("wall_pressure", "m/(d t^2)", "late mean pressure on the wall, each bin of the profile alike", Real(|s| s.wall_pressure)),
     result("wall_pressure_largest", "m/(d t^2)", "largest late mean pressure on the wall over the phases of the wave", Real(|s| s.wall_pressure_largest)),
     result("contact_force_99", "m d/t^2", "late mean of the normal force that 99 % of the grains' contacts do not exceed", OptionalMeasured(|s| s.contact_force.map(|force| force.high))).labelled("99 % contact force"),
     result("contact_force_largest", "m d/t^2", "largest normal force at a contact of a grain, at the late moments that were looked at", Optional(|s| s.contact_force.map(|force| force.largest))).labelled("largest contact force"),

@@ -14,7 +14,7 @@ use peristalsis_run::{
     Run, RunError, RunFolder, TrajectoryPlan, read_state, scheduled_wavelengths, warnings,
 };
 
-use crate::arguments::RunArguments;
+use crate::arguments::{RunArguments, Threads};
 use crate::commands::trajectory::{in_words as in_one_line, request};
 use crate::commands::{counted, print, rounded, say, tell, warn_besides};
 use crate::failure::Failure;
@@ -105,7 +105,13 @@ fn compute_with(arguments: &RunArguments, run: &mut Run, processors: usize) -> R
             ));
         }
     };
-    let threads = arguments.threads.of(run, processors);
+    let threads = threads_of(arguments.threads, run, processors);
+    Ok(run.compute_with(instructions, threads)?)
+}
+
+/// Threads that compute a run where so many processors are free; says which of them are in vain.
+pub(super) fn threads_of(asked: Threads, run: &Run, processors: usize) -> usize {
+    let threads = asked.of(run, processors);
     if threads > 1 && !run.simulation().takes_threads() {
         // Once, however many replicas there are.
         static SAID: Once = Once::new();
@@ -123,7 +129,7 @@ fn compute_with(arguments: &RunArguments, run: &mut Run, processors: usize) -> R
             ));
         });
     }
-    Ok(run.compute_with(instructions, threads)?)
+    threads
 }
 
 /// Reads the configuration, packs the grains, makes the folder.

@@ -11,6 +11,7 @@ use peristalsis_run::{Run, RunFolder, TrajectoryFormat};
 use peristalsis_viewer::{Options, Recording, Viewer};
 
 use crate::arguments::{ConfigurationArguments, ViewArguments};
+use crate::commands::run::threads_of;
 use crate::commands::{print, say};
 use crate::failure::Failure;
 use crate::sources::{self, known_presets};
@@ -30,7 +31,7 @@ pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
         (None, Some(path)) => play(&path, arguments.port)?,
         (None, None) => {
             let (mut run, options) = open(arguments)?;
-            let threads = arguments.threads.of(&run, processors());
+            let threads = threads_of(arguments.threads, &run, processors());
             run.compute_with(Instructions::widest(), threads)?;
             Viewer::open(run, options)?
         }
