@@ -37,6 +37,15 @@ def answer(command: list[str], *arguments: object) -> str:
     return subprocess.run([*command, *map(str, arguments)], check=True, capture_output=True, text=True).stdout
 
 
+def widest(native: list[str]) -> str:
+    """The widest instructions that the native program has on this machine."""
+    workload = answer(native, "--list").split()[0]
+    for instructions in ("avx512", "avx2", "neon"):
+        if subprocess.run([*native, workload, instructions], capture_output=True).returncode == 0:
+            return instructions
+    return "plain"
+
+
 def processor_time(command: list[str], *arguments: object) -> float:
     """Seconds of the processor that a program takes."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -56,26 +65,27 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--rounds", type=int, default=5, help="how often each is timed (default 5)")
     parser.add_argument("--seconds", type=float, default=1.0, help="for at least so long (default 1)")
-    parser.add_argument("--native", default="avx512", help="instructions of the native program (default avx512)")
+    parser.add_argument("--native", help="instructions of the native program (default: the widest of this machine)")
     parser.add_argument("workloads", nargs="*", help="those to be timed (default: all)")
     arguments = parser.parse_args()
     build("--target", WASM)
     build()
     native = [str(TARGET / "release" / "examples" / EXAMPLE)]
     wasm = [*RUN_WASM, str(TARGET / WASM / "release" / "examples" / f"{EXAMPLE}.wasm")]
-    print(f"{'10^6 grain-steps a second':26}{arguments.native:>10}{'simd128':>10}{'ratio':>8}")
+    instructions = arguments.native or widest(native)
+    print(f"{'10^6 grain-steps a second':26}{instructions:>10}{'simd128':>10}{'ratio':>8}")
     for workload in arguments.workloads or answer(native, "--list").split():
         times = 1
-        while seconds_of_steps(native, workload, arguments.native, times) < arguments.seconds:
+        while seconds_of_steps(native, workload, instructions, times) < arguments.seconds:
             times *= 2
         pairs = [
             (
-                seconds_of_steps(native, workload, arguments.native, times),
+                seconds_of_steps(native, workload, instructions, times),
                 seconds_of_steps(wasm, workload, "simd128", times),
             )
             for _ in range(arguments.rounds)
         ]
-        work = times * int(answer(native, workload, arguments.native)) / 1e6
+        work = times * int(answer(native, workload, instructions)) / 1e6
         here, there = (work / min(seconds) for seconds in zip(*pairs))
         ratio = median(wasm / native for native, wasm in pairs)
         print(f"{workload:26}{here:10.1f}{there:10.1f}{ratio:8.2f}", flush=True)
