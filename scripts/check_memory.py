@@ -143,7 +143,7 @@ def main() -> int:
             "run": [program, "run", str(tube), "--out", str(folder / "run"), "--quiet", "--threads", "1"],
             "study": [program, "study", "run", str(study), "--store", str(folder / "store"), "--quiet", "--for", "5m"],
             # So long that it does not come to the most samples that a viewer keeps, where it would stop.
-            "viewer": [program, "view", "frictionless", "--set", "tube.waves=1000", "--saves", str(folder / "saves")],
+            "viewer": [program, "view", "frictionless", "--set", "tube.waves=300", "--saves", str(folder / "saves")],
             "python": [sys.executable, "-c", LOOP, str(tube)],
         }
         beside = {"viewer": look_on}
