@@ -1,8 +1,7 @@
 //! The threads that a simulation shares its work out to.
 
-use std::cell::Cell;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -33,8 +32,8 @@ const PER_THREAD: [usize; 2] = [2, 8];
 /// Spheres of a stretch where there may be more than the least: what neighbouring stretches both do is little beside it.
 const SPHERES_OF_A_STRETCH: usize = 4_000;
 
-/// Without work a thread stays awake for so long: between the parts of a step that are shared out one thread may prepare
-/// the next for some 0.1 ms.
+/// During an advance a thread without work stays awake for so long: between the parts of a step that are shared out one
+/// thread may prepare the next for some 0.1 ms.
 const PATIENCE: Duration = Duration::from_micros(100);
 /// Then it looks again at such intervals; a chain of legs waits for it as long.
 const NAP: Duration = Duration::from_micros(50);
@@ -43,11 +42,27 @@ const LOOKS: usize = 16;
 
 /// Threads, where there are to be more than one.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Threads(Option<Arc<(ThreadPool, Team)>>);
+pub(crate) struct Threads(Option<Arc<Pool>>);
 
-thread_local! {
-    /// Whether this thread leads an advance or waits for its parts, and needs not wait for those of another.
-    static TAKES_PART: Cell<bool> = const { Cell::new(false) };
+#[derive(Debug)]
+struct Pool {
+    threads: ThreadPool,
+    service: Service,
+}
+
+/// What the threads of a pool serve, until this is dropped.
+#[derive(Debug)]
+struct Service(Arc<Served>);
+
+#[derive(Debug)]
+struct Served {
+    team: Team,
+    /// How many advances go on.
+    advances: AtomicUsize,
+    /// Whether the pool is at its end.
+    ended: Mutex<bool>,
+    /// Told of each advance that begins, and of the end.
+    changed: Condvar,
 }
 
 /// Work that can be cut in two: the first so many items, and the rest.
@@ -86,25 +101,37 @@ impl Threads {
     /// # Errors
     /// [`EngineError::Threads`] where the system gives no more.
     pub(crate) fn new(threads: usize) -> Result<Self, EngineError> {
-        let pool = (threads > 1)
-            .then(|| ThreadPoolBuilder::new().num_threads(threads).build())
-            .transpose()
-            .map_err(|error| EngineError::Threads {
-                threads,
-                reason: error.to_string(),
-            })?;
-        let with_team = |pool| Arc::new((pool, Team::new(threads)));
-        Ok(Self(pool.map(with_team)))
+        if threads < 2 {
+            return Ok(Self::default());
+        }
+        let service = Service(Arc::new(Served {
+            team: Team::new(threads),
+            advances: AtomicUsize::new(0),
+            ended: Mutex::new(false),
+            changed: Condvar::new(),
+        }));
+        let served = Arc::clone(&service.0);
+        // A thread serves from its start on. One that began to serve within other work, while it waits for the rest of that,
+        // would never come back to it.
+        let pool = ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .start_handler(move |member| served.serve(member))
+            .build();
+        let threads = pool.map_err(|error| EngineError::Threads {
+            threads,
+            reason: error.to_string(),
+        })?;
+        Ok(Self(Some(Arc::new(Pool { threads, service }))))
     }
 
     pub(crate) fn number(&self) -> usize {
         let pool = self.0.as_deref();
-        pool.map_or(1, |(pool, _)| pool.current_num_threads())
+        pool.map_or(1, |pool| pool.threads.current_num_threads())
     }
 
     /// Which of them this one is, if any.
     fn index(&self) -> Option<usize> {
-        self.0.as_deref()?.0.current_thread_index()
+        self.0.as_deref()?.threads.current_thread_index()
     }
 
     /// Into how many stretches a work on so many spheres is best cut.
@@ -128,18 +155,11 @@ impl Threads {
 
     /// Does work that shares itself out, part after part; the threads stay awake for the parts.
     pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        let Some((pool, team)) = self.0.as_deref() else {
+        let Some(pool) = self.0.as_deref() else {
             return work();
         };
-        let goes_on = AtomicBool::new(true);
-        pool.scope(|scope| {
-            scope.spawn_broadcast(|_, _| stay_awake(team, &goes_on));
-            let _end = End {
-                goes_on: &goes_on,
-                took_part: TAKES_PART.replace(true),
-            };
-            work()
-        })
+        let _advance = Advance::begin(&pool.service.0);
+        pool.threads.install(work)
     }
 
     /// Does `work` with each of `stretches` and that part of `all` which belongs to it, `length` items long.
@@ -153,7 +173,7 @@ impl Threads {
         length: &(impl Fn(&S) -> usize + Sync),
         work: &(impl Fn(&mut S, P) + Sync),
     ) {
-        let Some((_, team)) = self.0.as_deref() else {
+        let Some(pool) = self.0.as_deref() else {
             for stretch in stretches {
                 let (own, rest) = all.cut(length(stretch));
                 all = rest;
@@ -172,7 +192,7 @@ impl Threads {
         // The next stretch of each thread.
         let next = (0..threads).map(|owner| Apart(AtomicUsize::new(owner * number / threads)));
         let next: Vec<_> = next.collect();
-        team.call(&|| {
+        pool.service.0.team.call(&|| {
             let thread = self.index().unwrap_or(0);
             for owner in (thread..threads).chain(0..thread) {
                 let (Apart(next), end) = (&next[owner], (owner + 1) * number / threads);
@@ -199,8 +219,8 @@ impl Threads {
         work: &(impl Fn(&L) + Sync),
     ) {
         let done = [const { AtomicUsize::new(0) }; CHAINS];
-        if let Some((_, team)) = self.0.as_deref() {
-            team.call(&|| {
+        if let Some(pool) = self.0.as_deref() {
+            pool.service.0.team.call(&|| {
                 let Some(thread) = self.index() else {
                     return;
                 };
@@ -211,11 +231,8 @@ impl Threads {
                         if !wait_for(turn, done) {
                             return;
                         }
-                        // Where two advance at once, a thread may come twice.
-                        if done.load(Ordering::Acquire) == turn {
-                            work(leg);
-                            done.store(turn + 1, Ordering::Release);
-                        }
+                        work(leg);
+                        done.store(turn + 1, Ordering::Release);
                     }
                 }
                 // Others may wait for a leg that nobody does if this thread leaves and the call ends.
@@ -248,37 +265,60 @@ fn wait_for(number: usize, done: &AtomicUsize) -> bool {
     }
 }
 
-/// Serves a team, and rayon, until an advance ends, unless this thread does so already.
-fn stay_awake(team: &Team, goes_on: &AtomicBool) {
-    let Some(member) = rayon::current_thread_index().filter(|_| !TAKES_PART.replace(true)) else {
-        return;
-    };
-    let (mut last, mut idle) = (0, None);
-    while goes_on.load(Ordering::Relaxed) {
-        let served = (0..LOOKS).any(|_| {
-            core::hint::spin_loop();
-            team.take_part(member, &mut last)
-        });
-        if served || rayon::yield_now() == Some(Yield::Executed) {
-            idle = None;
-        } else if idle.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
-            thread::sleep(NAP);
+impl Served {
+    /// Serves the team, and rayon, while there are advances, until the pool's end.
+    fn serve(&self, member: usize) {
+        let mut last = 0;
+        while self.waits_for_an_advance() {
+            let mut idle = None;
+            while self.advances.load(Ordering::Relaxed) > 0 {
+                let served = (0..LOOKS).any(|_| {
+                    core::hint::spin_loop();
+                    self.team.take_part(member, &mut last)
+                });
+                if served || rayon::yield_now() == Some(Yield::Executed) {
+                    idle = None;
+                } else if idle.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
+                    thread::sleep(NAP);
+                }
+            }
         }
     }
-    TAKES_PART.set(false);
+
+    /// Sleeps until an advance goes on; answers false at the pool's end.
+    fn waits_for_an_advance(&self) -> bool {
+        let ended = self.ended.lock().unwrap_or_else(PoisonError::into_inner);
+        let idle = |ended: &mut bool| !*ended && self.advances.load(Ordering::Relaxed) == 0;
+        let ended = self.changed.wait_while(ended, idle);
+        !*ended.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Does `change` so that no thread that falls asleep misses it.
+    fn tell(&self, change: impl FnOnce(&mut bool)) {
+        change(&mut self.ended.lock().unwrap_or_else(PoisonError::into_inner));
+        self.changed.notify_all();
+    }
 }
 
-/// The end of an advance, by a panic too.
-struct End<'a> {
-    goes_on: &'a AtomicBool,
-    /// What [`TAKES_PART`] was before.
-    took_part: bool,
-}
-
-impl Drop for End<'_> {
+impl Drop for Service {
     fn drop(&mut self) {
-        self.goes_on.store(false, Ordering::Relaxed);
-        TAKES_PART.set(self.took_part);
+        self.0.tell(|ended| *ended = true);
+    }
+}
+
+/// An advance that goes on; its end, by a panic too.
+struct Advance<'a>(&'a Served);
+
+impl<'a> Advance<'a> {
+    fn begin(served: &'a Served) -> Self {
+        served.tell(|_| _ = served.advances.fetch_add(1, Ordering::Relaxed));
+        Self(served)
+    }
+}
+
+impl Drop for Advance<'_> {
+    fn drop(&mut self) {
+        self.0.advances.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

@@ -1,6 +1,8 @@
 use std::thread;
 use std::time::Duration;
 
+use rayon::prelude::*;
+
 use super::*;
 
 /// Each of so many stretches, three items long, writes its number on its own.
@@ -112,6 +114,24 @@ fn legs_are_done_in_turn_whoever_comes() {
                     assert_eq!(of_chain.collect::<Vec<_>>(), *chain);
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn short_advances_with_work_of_rayon_within_such_work_end() {
+    for number in [2, 3, 5] {
+        let threads = Threads::new(number).expect("threads");
+        for _ in 0..5_000 {
+            let sum = threads.install(|| {
+                let of_one = |item: usize| {
+                    let parts = (0..8).into_par_iter().with_max_len(1);
+                    parts.map(|part| item + part).sum::<usize>()
+                };
+                let items = (0..16).into_par_iter().with_max_len(1);
+                items.map(of_one).sum::<usize>()
+            });
+            assert_eq!(sum, 1408);
         }
     }
 }
