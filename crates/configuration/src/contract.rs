@@ -56,6 +56,9 @@ impl Contract<'_> {
             let is_to_be_shown = self.problems.number() < MOST_SUGGESTIONS;
             let nearest = is_to_be_shown.then(|| suggestion::nearest(&full, known));
             let help = match nearest.flatten() {
+                Some(near) if near == full => {
+                    format!("a dot in quotation marks is part of a name: write {name} without them")
+                }
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("known here: {}", names_of(properties)),
             };

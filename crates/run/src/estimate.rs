@@ -40,6 +40,9 @@ const BYTES_OF_ROUGH_GRAIN: f64 = 4000.0;
 pub struct Estimate {
     /// Grains.
     pub grains: u64,
+    /// Grains of them that wait outside the inlet at the start, where the tube is open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub waiting_grains: Option<u64>,
     /// Spheres of the wall.
     pub wall_spheres: u64,
     /// Grains, and spheres of an elastic wall.
@@ -140,6 +143,7 @@ pub fn estimate_by(
     let si = configuration.units.as_ref();
     Ok(Estimate {
         grains: configuration.grains.number,
+        waiting_grains: configuration.inlet.map(|inlet| inlet.waiting),
         moving_spheres: moving_spheres(configuration),
         wall_spheres: configuration.tube.wall_spheres(),
         volume_fraction: configuration.volume_fraction(),

@@ -32,8 +32,14 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
     let duration = estimate.duration;
     let mut lines = vec![
         format!(
-            "grains            {} (volume fraction {:.4}, number density {:.4} d^-3)",
-            estimate.grains, estimate.volume_fraction, estimate.number_density
+            "grains            {} (volume fraction {:.4}, number density {:.4} d^-3){}",
+            estimate.grains,
+            estimate.volume_fraction,
+            estimate.number_density,
+            match estimate.waiting_grains {
+                None | Some(0) => String::new(),
+                Some(waiting) => format!(", of which {waiting} wait outside the inlet"),
+            }
         ),
         format!(
             "wall              {} along {} d",
@@ -91,24 +97,28 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         ));
     }
     if let Some(si) = &estimate.si {
-        let mut fastest = String::new();
+        let (mut wave, mut flow) = (String::new(), String::new());
+        if estimate.period.is_some() {
+            let [frequency, speed] =
+                [si.wave_frequency_hz, si.wave_speed_m_per_s].map(|it| significant(it, 4));
+            wave = format!("; a wave of {frequency} Hz, {speed} m/s");
+            let largest = significant(si.largest_mass_flow_rate_kg_per_s, 4);
+            flow = format!("; at most {largest} kg/s");
+        }
         if si.fastest_wave_frequency_hz != si.wave_frequency_hz {
             let frequency = significant(si.fastest_wave_frequency_hz, 4);
-            fastest = format!(", by the schedule up to {frequency} Hz");
+            wave += &format!(", by the schedule up to {frequency} Hz");
         }
         lines.push(format!(
-            "in SI             d = {} m, m = {} kg, t = {} s; a wave of {} Hz, {} m/s{fastest}",
+            "in SI             d = {} m, m = {} kg, t = {} s{wave}",
             significant(si.unit_length_m, 4),
             significant(si.unit_mass_kg, 4),
-            significant(si.unit_time_s, 4),
-            significant(si.wave_frequency_hz, 4),
-            significant(si.wave_speed_m_per_s, 4)
+            significant(si.unit_time_s, 4)
         ));
         lines.push(format!(
-            "                  {} s in steps of {} s; at most {} kg/s; unit of pressure {} Pa, of power {} W",
+            "                  {} s in steps of {} s{flow}; unit of pressure {} Pa, of power {} W",
             significant(si.duration_s, 4),
             significant(si.time_step_s, 3),
-            significant(si.largest_mass_flow_rate_kg_per_s, 4),
             significant(si.unit_pressure_pa, 4),
             significant(si.unit_power_w, 4)
         ));

@@ -30,6 +30,7 @@ periods = 40
 const WRONG: &str = r#"
 width = 2.75 -> widht = 2.75\n& | UnknownKey | drive.widht | 13 | did you mean drive.width?
 [grains] -> width = 2.75\n& | UnknownKey | width | 1 | did you mean drive.width?
+[grains] -> "drive.width" = 2.75\n& | UnknownKey | drive.width | 1 | write drive.width without them
 [grains] -> [grain]\n& | UnknownKey | grain | 1 | did you mean grains?
 waves = 10 -> &\narrangement = "random"\narrangement_seed = -1 | OutOfRange | tube.arrangement_seed | 10 | 0 or more
 waves = 10 -> &\narrangement = "aligned"\narrangement_seed = 2 | Conflict | tube.arrangement_seed | 10 | arrangement = "random" or "disordered"

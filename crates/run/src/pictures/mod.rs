@@ -119,7 +119,8 @@ fn particular(configuration: &Configuration) -> Option<String> {
     (!words.is_empty()).then(|| words.join(",  "))
 }
 
-/// A drive parameter as a title shows it: its value, or the first and the last of its schedule.
+/// A drive parameter as a title shows it: its value, or the first and the last of its schedule, or the range of one that
+/// ends where it begins.
 fn scheduled_value(
     configuration: &Configuration,
     parameter: ScheduledParameter,
@@ -127,9 +128,15 @@ fn scheduled_value(
 ) -> String {
     match configuration.drive.schedule(parameter) {
         Some(schedule) => {
-            let last = configuration.run.periods.unwrap_or(f64::INFINITY);
-            let ends = [schedule.value(0.0), schedule.value(last)].map(short);
-            ends.join(" to ")
+            let periods = configuration.run.periods.unwrap_or(f64::INFINITY);
+            let (first, last) = match [0.0, periods].map(|time| schedule.value(time)) {
+                [first, last] if first == last => schedule.range(periods),
+                [first, last] => (first, last),
+            };
+            if first == last {
+                return short(first);
+            }
+            [first, last].map(short).join(" to ")
         }
         None => short(constant),
     }

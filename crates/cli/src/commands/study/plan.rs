@@ -15,8 +15,9 @@ pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     let study = Specification::read(&arguments.file)?;
     let plan = study.plan();
     let estimate = study_estimate(&study, plan)?;
-    let finished = match Store::open(&store_path(&arguments.store, &study)) {
-        Err(_) if arguments.store.is_none() => 0,
+    let path = store_path(&arguments.store, &study);
+    let finished = match Store::open(&path) {
+        Err(_) if arguments.store.is_none() || !path.exists() => 0,
         Err(error) => return Err(error.into()),
         Ok(store) => {
             let survey = store.survey()?;
