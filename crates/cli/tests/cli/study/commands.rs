@@ -171,7 +171,7 @@ fn what_is_wrong_with_a_study_is_said_with_its_place_and_nothing_is_made() {
     place.refuses("study run missing.toml", &["cannot read missing.toml"]);
     // A store that `study run` would make is none to be refused; another folder is.
     place.does("study plan study.toml --store nowhere");
-    place.refuses("study plan study.toml --store .", &["no store"]);
+    place.refuses("study plan study.toml --store store/runs", &["no store"]);
     place.refuses("study status nowhere", &["no store", "study run"]);
     place.write("other.toml", quick().replace("\"tested\"", "\"other\""));
     place.refuses(
