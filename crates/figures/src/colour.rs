@@ -33,6 +33,9 @@ const CYCLIC: [u32; 9] = [
     0xe2d9e2, 0x9abac9, 0x6177ba, 0x5d3c9c, 0x2f1436, 0x76224f, 0xb25652, 0xcfa68f, 0xe2d9e2,
 ];
 
+/// Dark violet through red to light yellow: told apart from [`SEQUENTIAL`] where both are in one picture, as in the viewer.
+const FORCE: [u32; 5] = [0x463c6e, 0x963278, 0xe1503c, 0xffaa32, 0xfffabe];
+
 /// Steps of the diverging map on either side of 0: few enough that the spheres of a snapshot share their shadings.
 const DIVERGING_STEPS: f64 = 24.0;
 
@@ -96,6 +99,11 @@ pub(crate) fn sequential(value: f64) -> Colour {
 /// Colour of a phase, 0..1, of which 0 and 1 are the same; values beyond are clamped.
 pub(crate) fn cyclic(value: f64) -> Colour {
     between(&CYCLIC, value)
+}
+
+/// Colour of a force scaled to 0..1: darkest at 0, lightest at 1; values beyond are clamped.
+pub(crate) fn force(value: f64) -> Colour {
+    between(&FORCE, value)
 }
 
 /// Colour at a fraction of the way through colours in equal steps.

@@ -1,7 +1,7 @@
 //! Colours that mean values, and the bar that says which.
 
 use crate::axis::{Axis, Scale, Side, Tick, widest};
-use crate::colour::{BLACK, Colour, GREY, cyclic, diverging, sequential};
+use crate::colour::{BLACK, Colour, GREY, cyclic, diverging, force, sequential};
 use crate::drawing::{Anchor, Drawing, Image, Layer, Stroke};
 use crate::error::FigureError;
 use crate::geometry::{Path, Point, Rectangle};
@@ -18,6 +18,8 @@ pub enum Palette {
     Diverging,
     /// Light through blue, dark and red to light again, for what begins anew where it ends.
     Cyclic,
+    /// Dark violet through red to light yellow, for forces between what has other colours.
+    Force,
 }
 
 /// Which value has which colour; values beyond the ends have the colours of the ends.
@@ -91,6 +93,11 @@ impl ColourScale {
         colour.unwrap_or(GREY).srgb()
     }
 
+    /// Where a value lies between the ends, from 0 to 1.
+    pub fn part(&self, value: f64) -> f64 {
+        self.axis().fraction(value).clamp(0.0, 1.0)
+    }
+
     pub(crate) fn check(&self) -> Result<(), FigureError> {
         let lowest = match self.scale {
             Scale::Linear | Scale::Counting => f64::MIN,
@@ -121,6 +128,7 @@ impl ColourScale {
             Palette::Sequential => sequential(self.reach * fraction.clamp(0.0, 1.0)),
             Palette::Diverging => diverging(2.0 * fraction - 1.0),
             Palette::Cyclic => cyclic(fraction),
+            Palette::Force => force(fraction),
         }
     }
 

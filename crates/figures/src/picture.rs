@@ -8,8 +8,8 @@ use crate::geometry::{Path, Point, Rectangle};
 use crate::style::{LABEL_SIZE, LEGEND_SIZE, TICK_SIZE, Width};
 use crate::text::{DIGIT_HEIGHT, Text};
 
-/// A picture of pixels, such as the tube as it looks, with notes above it, marks along its upper edge, and a scale and a
-/// bar of colours below. No pixel of the picture is hidden, and none is changed.
+/// A picture of pixels, such as the tube as it looks, with notes above it, marks along its upper edge, and a scale and
+/// bars of colours below. No pixel of the picture is hidden, and none is changed.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PictureFigure<'a> {
     /// Description of the picture, in markup: the title of the SVG, not drawn.
@@ -24,8 +24,8 @@ pub struct PictureFigure<'a> {
     pub marks: &'a [PlaceMark],
     /// The length that is shown for scale.
     pub scale_bar: Option<&'a ScaleBar>,
-    /// What the colours mean.
-    pub colours: Option<&'a ColourScale>,
+    /// What the colours mean, from the uppermost bar.
+    pub colours: &'a [&'a ColourScale],
     /// Colour of the page around.
     pub paper: Paper,
     /// Width on a journal's page, from which the size of type follows; a coarse picture has larger type.
@@ -85,6 +85,8 @@ const BAR_HEIGHT: f64 = 5.5;
 /// Widest bar of colours, and its part of a narrow page.
 const BAR_WIDTH: f64 = 120.0;
 const BAR_PART: f64 = 0.3;
+/// Height of a bar of colours with its numbers, and of the gap to the next.
+const ROW: f64 = BAR_HEIGHT + TICK_SIZE + 4.0;
 /// Gap below the picture.
 const GAP_BELOW: f64 = 6.0;
 /// Space around the scale.
@@ -107,7 +109,7 @@ impl PictureFigure<'_> {
                 found: self.pixels.len() / 3,
             });
         }
-        if let Some(colours) = self.colours {
+        for colours in self.colours {
             colours.check()?;
         }
         let [page, ink, faint_ink] = self.paper.colours();
@@ -129,10 +131,12 @@ impl PictureFigure<'_> {
         self.draw_notes(drawing.layer("notes", None), area.width, ink);
         self.draw_marks(drawing.layer("marks", None), area, faint_ink);
         let free_from = self.draw_scale_bar(drawing.layer("scale", None), area, ink);
-        if let Some(colours) = self.colours {
-            let width = BAR_WIDTH.min(BAR_PART * area.width);
-            let left = area.width - EDGE - colours.overhang(width) - width;
-            let bar = Rectangle::new((left, area.bottom() + GAP_BELOW), (width, BAR_HEIGHT));
+        let width = BAR_WIDTH.min(BAR_PART * area.width);
+        let overhangs = self.colours.iter().map(|colours| colours.overhang(width));
+        let left = area.width - EDGE - overhangs.fold(0.0, f64::max) - width;
+        for (number, colours) in self.colours.iter().enumerate() {
+            let top = area.bottom() + GAP_BELOW + number as f64 * ROW;
+            let bar = Rectangle::new((left, top), (width, BAR_HEIGHT));
             colours.draw_bar_across(&mut drawing, bar, free_from, ink);
         }
         Ok(drawing)
@@ -150,10 +154,9 @@ impl PictureFigure<'_> {
     }
 
     fn space_below(&self) -> f64 {
-        if self.colours.is_some() || self.scale_bar.is_some() {
-            GAP_BELOW + BAR_HEIGHT + TICK_SIZE + EDGE + 2.0
-        } else {
-            0.0
+        match self.colours.len() {
+            0 if self.scale_bar.is_none() => 0.0,
+            bars => GAP_BELOW + bars.max(1) as f64 * ROW + EDGE - 2.0,
         }
     }
 

@@ -85,7 +85,7 @@ impl Units {
     }
 
     /// Divisor that makes a force a pure number, in markup.
-    fn per_force(self) -> &'static str {
+    pub fn per_force(self) -> &'static str {
         match self {
             Self::Linear => "/*kd*",
             Self::Hertz => "/*Yd*^{2}",

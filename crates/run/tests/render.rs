@@ -378,3 +378,44 @@ fn the_space_time_diagram_has_a_row_a_wave_and_a_column_a_period() {
     assert!(drawing.svg().contains("number of the wave"));
     assert!(drawing.png().unwrap().len() > 5_000);
 }
+
+#[test]
+fn contacts_are_drawn_with_a_bar_of_their_forces_and_in_a_section_only_its_own() {
+    let settings = "drive.width=1.4 initial.state=jammed tube.waves=2 grains.number=60";
+    let mut run = Run::new(common::configuration("frictionless", settings)).unwrap();
+    (0..20).for_each(|_| run.advance().map(drop).unwrap());
+    let throat = run.simulation().wall().throat();
+    let of = |wall: WallLook, contacts: bool| Look {
+        aspect: Aspect::Section(Place::Phase(throat)),
+        wall,
+        contacts,
+        ..look(300)
+    };
+    // How far from the middle something is drawn.
+    let reach = |look: Look| {
+        let picture = picture(&run, look);
+        let pixels = picture.pixels().chunks_exact(3).enumerate();
+        let drawn = pixels.filter(|(_, pixel)| pixel.iter().any(|&byte| byte < 250));
+        let away = drawn.map(|(at, _)| {
+            let [x, y] = [at % 300, at / 300].map(|place| place as f64 - 149.5);
+            x.hypot(y)
+        });
+        away.fold(0.0, f64::max)
+    };
+    let (of_contacts, of_wall) = (
+        reach(of(WallLook::Hidden, true)),
+        reach(of(WallLook::Cut, false)),
+    );
+    assert!(of_contacts < of_wall, "{of_contacts} {of_wall}");
+    let frame = FrameSource::now(&run, true);
+    for contacts in [true, false] {
+        let side = Look {
+            contacts,
+            ..look(400)
+        };
+        let scene = PictureScene::new(&run, side, std::slice::from_ref(&frame)).unwrap();
+        let svg = scene.draw(&frame).unwrap().svg();
+        // The picture, and bars of colours.
+        assert_eq!(svg.matches("<image").count(), 2 + usize::from(contacts));
+    }
+}

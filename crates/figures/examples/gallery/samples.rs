@@ -407,7 +407,7 @@ fn picture() -> Drawn {
         notes: &["*t*/*T* = 1.5", "wave →", "*J*/*J*_{max} = 0.9"].map(str::to_owned),
         marks: &[mark(0.25, "belly"), mark(0.75, "throat")],
         scale_bar: Some(&scale_bar),
-        colours: Some(&ColourScale::new("*v_z*/*c*", -1.0, 1.0).palette(Palette::Diverging)),
+        colours: &[&ColourScale::new("*v_z*/*c*", -1.0, 1.0).palette(Palette::Diverging)],
         width: Width::DoubleColumn,
         ..PictureFigure::default()
     }

@@ -18,6 +18,7 @@ use self::caption::Caption;
 pub(crate) use self::caption::{moving_instant, still_instant};
 use self::field::Coloured;
 pub use self::field::Field;
+use self::spheres::force_scale;
 
 /// From where a tube is looked at; the wave always runs to the right, or towards the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -182,6 +183,8 @@ pub struct PictureScene {
     shown: f64,
     coloured: Coloured,
     scale: ColourScale,
+    /// Of the normal forces, where contacts are drawn and there are any.
+    forces: Option<ColourScale>,
 }
 
 impl PictureScene {
@@ -199,9 +202,12 @@ impl PictureScene {
         let shown = wall.length().min(look.waves * wall.wavelength());
         let coloured = Coloured::new(look.field, run, samples)?;
         let scale = coloured.scale(look.range);
+        let units = units(run.configuration());
+        let forces = look.contacts.then(|| force_scale(samples, units));
         let scene = Self {
             look,
-            units: units(run.configuration()),
+            units,
+            forces: forces.flatten(),
             radius: shown_radius(&wall, first, samples),
             wall,
             shown,
@@ -239,6 +245,7 @@ impl PictureScene {
         let picture = self.picture(frame)?;
         let caption = Caption::of(self, frame);
         let full = self.look.writing == Writing::Full;
+        let scales: Vec<&ColourScale> = [&self.scale].into_iter().chain(&self.forces).collect();
         PictureFigure {
             title: &caption.title,
             pixels: picture.pixels(),
@@ -246,7 +253,7 @@ impl PictureScene {
             notes: if full { &caption.notes } else { &[] },
             marks: if full { &caption.marks } else { &[] },
             scale_bar: full.then_some(&caption.scale_bar),
-            colours: full.then_some(&self.scale),
+            colours: if full { &scales } else { &[] },
             paper: self.look.paper,
             width: match self.look.aspect {
                 Aspect::Side => Width::DoubleColumn,

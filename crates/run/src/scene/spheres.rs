@@ -1,6 +1,7 @@
 //! The spheres of an instant at their places before the eye.
 
 use glam::DVec3;
+use peristalsis_figures::{ColourScale, Palette, Units};
 use peristalsis_formats::Frame;
 use peristalsis_formats::trajectory::FrameContact;
 use peristalsis_render::{Colour, Finish, Sphere};
@@ -19,62 +20,52 @@ const SHRUNK: f64 = 0.32;
 const COVERED: f64 = 0.97;
 /// From one sphere of a rod to the next: a part of its radius, which nobody sees, but not less than so much \[d\].
 const SPACING: (f64, f64) = (0.1, 0.008);
-/// Normal forces from weak to strong, as in the viewer.
-const FORCES: [[f64; 3]; 5] = [
-    [70.0, 60.0, 110.0],
-    [150.0, 50.0, 120.0],
-    [225.0, 80.0, 60.0],
-    [255.0, 170.0, 50.0],
-    [255.0, 250.0, 190.0],
-];
+/// The contacts of an instant in which grains repel.
+fn repelling(frame: &Frame) -> impl Iterator<Item = &FrameContact> {
+    let repels =
+        |contact: &&FrameContact| contact.normal_force > 0.0 && contact.spheres[0] < frame.grains;
+    frame.contacts.iter().filter(repels)
+}
 
-/// The colour of a force, from 0 to 1 of the largest.
-fn force_colour(part: f64) -> Colour {
-    let place = part.clamp(0.0, 1.0) * (FORCES.len() - 1) as f64;
-    let below = (place as usize).min(FORCES.len() - 2);
-    let mix = place - below as f64;
-    let [red, green, blue] = std::array::from_fn(|k| {
-        (FORCES[below][k] + mix * (FORCES[below + 1][k] - FORCES[below][k])).round() as u8
-    });
-    Colour::srgb(red, green, blue)
+/// The colours of the normal forces at all these instants; `None` where no grains repel.
+pub(super) fn force_scale(samples: &[Frame], units: Units) -> Option<ColourScale> {
+    let contacts = samples.iter().flat_map(repelling);
+    let mut forces: Vec<f64> = contacts.map(|contact| contact.normal_force).collect();
+    forces.sort_unstable_by(f64::total_cmp);
+    let last = forces.len().checked_sub(1)?;
+    let label = format!("normal force, *f*_{{n}}{}", units.per_force());
+    let scale = ColourScale::new(&label, 0.0, forces[(COVERED * last as f64) as usize]);
+    Some(scale.palette(Palette::Force).found(0.0, forces[last]))
 }
 
 impl PictureScene {
     /// The contacts of the grains as rods of spheres, as thick as their normal force.
     fn rods(&self, frame: &Frame) -> Vec<Sphere> {
-        let repels = |contact: &&FrameContact| {
-            contact.normal_force > 0.0 && contact.spheres[0] < frame.grains
-        };
-        let contacts: Vec<&FrameContact> = frame.contacts.iter().filter(repels).collect();
-        let mut forces: Vec<f64> = contacts.iter().map(|it| it.normal_force).collect();
-        forces.sort_unstable_by(f64::total_cmp);
-        let Some(&largest) = forces.get((COVERED * forces.len().saturating_sub(1) as f64) as usize)
-        else {
+        let Some(scale) = &self.forces else {
             return Vec::new();
         };
-        let length = self.wall.length();
-        let shift = self.shift(cycles(frame));
+        let seen = self.seen(frame);
         let mut rods = Vec::new();
-        for contact in contacts {
+        for contact in repelling(frame) {
             let [first, second] = contact.spheres;
             let [x, y, z] = frame.position[first];
-            let begin = DVec3::new(x, y, (z - shift).rem_euclid(length));
-            if self.look.aspect == Aspect::Side && begin.z > self.shown {
+            let Some(z) = seen(z) else {
                 continue;
-            }
+            };
+            let begin = DVec3::new(x, y, z);
             // To the centre of a grain, or to where the wall is touched.
             let separation = DVec3::from_array(contact.separation);
             let way = match second < frame.grains {
                 true => -separation,
                 false => -0.5 * frame.diameter[first] * separation.normalize(),
             };
-            let part = (contact.normal_force / largest).min(1.0);
-            let radius = 0.02 + 0.11 * part;
+            let radius = 0.02 + 0.11 * scale.part(contact.normal_force);
+            let [red, green, blue] = scale.srgb(contact.normal_force);
             let pieces = (way.length() / (SPACING.0 * radius).max(SPACING.1)).ceil();
             rods.extend((0..=pieces as u32).map(|piece| Sphere {
                 centre: begin + f64::from(piece) / pieces * way,
                 radius,
-                colour: force_colour(part),
+                colour: Colour::srgb(red, green, blue),
                 finish: Finish::Opaque,
             }));
         }
@@ -93,8 +84,8 @@ impl PictureScene {
         }
     }
 
-    /// The spheres that are shown, grains in the colours of their values.
-    pub(super) fn spheres(&self, frame: &Frame, values: &[f64]) -> Vec<Sphere> {
+    /// z of the picture for z of the tube, where that is shown.
+    fn seen(&self, frame: &Frame) -> impl Fn(f64) -> Option<f64> {
         let length = self.wall.length();
         let shift = self.shift(cycles(frame));
         let places = match self.look.aspect {
@@ -106,6 +97,14 @@ impl PictureScene {
                 0.5 * length - half..0.5 * length + half
             }
         };
+        move |z| {
+            let z = (z - shift).rem_euclid(length);
+            places.contains(&z).then_some(z)
+        }
+    }
+
+    /// The spheres that are shown, grains in the colours of their values.
+    pub(super) fn spheres(&self, frame: &Frame, values: &[f64]) -> Vec<Sphere> {
         let view = self.view();
         let towards_eye = view.right.cross(view.up);
         let [red, green, blue] = STONE;
@@ -122,10 +121,7 @@ impl PictureScene {
                 finish: self.wall_finish(is_before)?,
             })
         };
-        let seen = |z: f64| {
-            let z = (z - shift).rem_euclid(length);
-            places.contains(&z).then_some(z)
-        };
+        let seen = self.seen(frame);
         let mut shown: Vec<Sphere> = spheres
             .filter_map(|(index, (&[x, y, z], diameter))| {
                 let centre = DVec3::new(x, y, seen(z)?);
@@ -150,9 +146,7 @@ impl PictureScene {
                 of_wall(centre, 0.5 * bead.diameter)
             }));
         }
-        if self.look.contacts {
-            shown.extend(self.rods(frame));
-        }
+        shown.extend(self.rods(frame));
         shown
     }
 
