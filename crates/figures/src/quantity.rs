@@ -84,11 +84,11 @@ impl Units {
         }
     }
 
-    /// Divisor that makes a force a pure number, in markup.
-    pub fn per_force(self) -> &'static str {
+    /// Unit of force in markup.
+    pub fn force(self) -> &'static str {
         match self {
-            Self::Linear => "/*kd*",
-            Self::Hertz => "/*Yd*^{2}",
+            Self::Linear => "*kd*",
+            Self::Hertz => "*Yd*^{2}",
         }
     }
 }
@@ -122,7 +122,7 @@ impl Quantity {
         };
         let per_unit = match self {
             Self::StrainRate => &format!(" {}", units.time()),
-            Self::ForceAmplitude => units.per_force(),
+            Self::ForceAmplitude => &format!("/{}", units.force()),
             _ => "",
         };
         format!("{words}, {symbol}{per_unit}")

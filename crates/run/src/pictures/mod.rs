@@ -87,7 +87,8 @@ fn title(configuration: &Configuration) -> String {
         } => {
             let force = value(ScheduledParameter::ForceAmplitude, force_amplitude);
             let density = format!("*n* = {:.3},  ", configuration.number_density());
-            (format!("*f*^{{P}} = {force} *Yd*^{{2}}"), density)
+            let unit = units(configuration).force();
+            (format!("*f*^{{P}} = {force} {unit}"), density)
         }
     };
     let rate = value(

@@ -33,7 +33,7 @@ pub(super) fn force_scale(samples: &[Frame], units: Units) -> Option<ColourScale
     let mut forces: Vec<f64> = contacts.map(|contact| contact.normal_force).collect();
     forces.sort_unstable_by(f64::total_cmp);
     let last = forces.len().checked_sub(1)?;
-    let label = format!("normal force, *f*_{{n}}{}", units.per_force());
+    let label = format!("normal force, *f*_{{n}}/{}", units.force());
     let scale = ColourScale::new(&label, 0.0, forces[(COVERED * last as f64) as usize]);
     Some(scale.palette(Palette::Force).found(0.0, forces[last]))
 }
