@@ -260,8 +260,10 @@ fn wait_for(number: usize, done: &AtomicUsize) -> bool {
         } else if since.elapsed() > NAP {
             return false;
         }
-        // Whose turn is far looks seldom: the fewer look, the sooner the next one sees that its turn has come.
+        // Whose turn is far looks seldom: the fewer look, the sooner the next one sees that its turn has come. The one whose
+        // turn it is may wait for a processor.
         (now..number).for_each(|_| core::hint::spin_loop());
+        thread::yield_now();
     }
 }
 
@@ -280,6 +282,9 @@ impl Served {
                     idle = None;
                 } else if idle.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
                     thread::sleep(NAP);
+                } else {
+                    // Another that waits for a processor may have work.
+                    thread::yield_now();
                 }
             }
         }
