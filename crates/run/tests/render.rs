@@ -407,15 +407,25 @@ fn contacts_are_drawn_with_a_bar_of_their_forces_and_in_a_section_only_its_own()
         reach(of(WallLook::Cut, false)),
     );
     assert!(of_contacts < of_wall, "{of_contacts} {of_wall}");
-    let frame = FrameSource::now(&run, true);
+    // A film knows its first picture alone, in which nothing may touch.
+    let first = FrameSource::now(&Run::new(run.configuration().clone()).unwrap(), true);
+    let now = FrameSource::now(&run, true);
     for contacts in [true, false] {
         let side = Look {
             contacts,
             ..look(400)
         };
-        let scene = PictureScene::new(&run, side, std::slice::from_ref(&frame)).unwrap();
-        let svg = scene.draw(&frame).unwrap().svg();
-        // The picture, and bars of colours.
-        assert_eq!(svg.matches("<image").count(), 2 + usize::from(contacts));
+        let scene = PictureScene::new(&run, side, std::slice::from_ref(&first)).unwrap();
+        for frame in [&first, &now] {
+            let svg = scene.draw(frame).unwrap().svg();
+            // The picture, and bars of colours.
+            assert_eq!(svg.matches("<image").count(), 2 + usize::from(contacts));
+        }
+        // The colours of large forces, which no grain and no wall has.
+        let picture = scene.picture(&now).unwrap();
+        let pixels = picture.pixels().chunks_exact(3);
+        let is_yellow = |pixel: &&[u8]| pixel[1].saturating_sub(pixel[2]) > 60;
+        let yellow = pixels.filter(is_yellow).count();
+        assert_eq!(yellow > 20, contacts, "{yellow} pixels");
     }
 }

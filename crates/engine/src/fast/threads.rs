@@ -134,6 +134,10 @@ impl Threads {
         self.0.as_deref()?.threads.current_thread_index()
     }
 
+    fn team(&self) -> Option<&Team> {
+        self.0.as_deref().map(|pool| &pool.service.0.team)
+    }
+
     /// Into how many stretches a work on so many spheres is best cut.
     pub(crate) fn stretches(&self, spheres: usize) -> usize {
         let [least, most] = PER_THREAD;
@@ -173,7 +177,7 @@ impl Threads {
         length: &(impl Fn(&S) -> usize + Sync),
         work: &(impl Fn(&mut S, P) + Sync),
     ) {
-        let Some(pool) = self.0.as_deref() else {
+        let Some(team) = self.team() else {
             for stretch in stretches {
                 let (own, rest) = all.cut(length(stretch));
                 all = rest;
@@ -192,7 +196,7 @@ impl Threads {
         // The next stretch of each thread.
         let next = (0..threads).map(|owner| Apart(AtomicUsize::new(owner * number / threads)));
         let next: Vec<_> = next.collect();
-        pool.service.0.team.call(&|| {
+        team.call(&|| {
             let thread = self.index().unwrap_or(0);
             for owner in (thread..threads).chain(0..thread) {
                 let (Apart(next), end) = (&next[owner], (owner + 1) * number / threads);
@@ -219,8 +223,8 @@ impl Threads {
         work: &(impl Fn(&L) + Sync),
     ) {
         let done = [const { AtomicUsize::new(0) }; CHAINS];
-        if let Some(pool) = self.0.as_deref() {
-            pool.service.0.team.call(&|| {
+        if let Some(team) = self.team() {
+            team.call(&|| {
                 let Some(thread) = self.index() else {
                     return;
                 };

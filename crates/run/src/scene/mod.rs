@@ -183,7 +183,7 @@ pub struct PictureScene {
     shown: f64,
     coloured: Coloured,
     scale: ColourScale,
-    /// Of the normal forces, where contacts are drawn and there are any.
+    /// Of the normal forces, where contacts are drawn.
     forces: Option<ColourScale>,
 }
 
@@ -207,7 +207,7 @@ impl PictureScene {
         let scene = Self {
             look,
             units,
-            forces: forces.flatten(),
+            forces,
             radius: shown_radius(&wall, first, samples),
             wall,
             shown,

@@ -20,6 +20,9 @@ const SHRUNK: f64 = 0.32;
 const COVERED: f64 = 0.97;
 /// From one sphere of a rod to the next: a part of its radius, which nobody sees, but not less than so much \[d\].
 const SPACING: (f64, f64) = (0.1, 0.008);
+/// The largest normal force within the colours where none is known, with linear and with Hertz contacts.
+const USUAL_FORCES: [f64; 2] = [0.1, 0.01];
+
 /// The contacts of an instant in which grains repel.
 fn repelling(frame: &Frame) -> impl Iterator<Item = &FrameContact> {
     let repels =
@@ -27,15 +30,21 @@ fn repelling(frame: &Frame) -> impl Iterator<Item = &FrameContact> {
     frame.contacts.iter().filter(repels)
 }
 
-/// The colours of the normal forces at all these instants; `None` where no grains repel.
-pub(super) fn force_scale(samples: &[Frame], units: Units) -> Option<ColourScale> {
-    let contacts = samples.iter().flat_map(repelling);
+/// The colours of the normal forces, by those at these instants. At the start of a run they are of its packing only.
+pub(super) fn force_scale(samples: &[Frame], units: Units) -> ColourScale {
+    let samples = samples.iter().filter(|frame| frame.time > 0.0);
+    let contacts = samples.flat_map(repelling);
     let mut forces: Vec<f64> = contacts.map(|contact| contact.normal_force).collect();
     forces.sort_unstable_by(f64::total_cmp);
-    let last = forces.len().checked_sub(1)?;
+    let largest = match (forces.len().checked_sub(1), units) {
+        (Some(last), _) => forces[(COVERED * last as f64) as usize],
+        (None, Units::Linear) => USUAL_FORCES[0],
+        (None, Units::Hertz) => USUAL_FORCES[1],
+    };
     let label = format!("normal force, *f*_{{n}}/{}", units.force());
-    let scale = ColourScale::new(&label, 0.0, forces[(COVERED * last as f64) as usize]);
-    Some(scale.palette(Palette::Force).found(0.0, forces[last]))
+    let scale = ColourScale::new(&label, 0.0, largest).palette(Palette::Force);
+    // Some are larger, now or in a later picture.
+    scale.found(0.0, f64::INFINITY)
 }
 
 impl PictureScene {
