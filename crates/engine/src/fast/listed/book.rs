@@ -9,8 +9,7 @@ use core::ops::Range;
 use super::network::{MeanForce, Rings};
 use super::pairs::Pairs;
 use super::record::Record;
-use super::spheres::Own;
-use crate::fast::lanes::{LANES, Lanes, Quad};
+use crate::fast::lanes::{LANES, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
@@ -90,8 +89,9 @@ fn to_arrays<M: Machine>([one, two]: [Lanes<M>; 2]) -> [[f64; LANES]; 2] {
 /// Terms of the contacts in the rows of a section, which wait to be added.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowTerms {
-    own: Own,
-    /// Behind which contact those of each grain end, and in the last place those of all other rows.
+    /// Of each contact the row in the section; and room for eight more.
+    rows: Vec<u32>,
+    /// Behind which contact those of each run of rows end.
     ends: Vec<u32>,
     /// Of each contact normal dissipation, tangential loss, sliding loss, energy; and room for eight more.
     pub(super) losses: Vec<Record>,
@@ -104,13 +104,11 @@ pub(super) struct RowTerms {
 }
 
 impl RowTerms {
-    /// Forgets all, and makes room for so many contacts in the rows of a section.
-    pub(super) fn clear(&mut self, own: Own, contacts: usize, complete: bool) {
-        self.own = own;
-        self.ends.clear();
-        self.ends.resize(own.grains + 1, 0);
+    /// Forgets all, and makes room for so many contacts.
+    pub(super) fn clear(&mut self, contacts: usize, complete: bool) {
         let room = contacts + LANES;
         if self.losses.len() < room {
+            self.rows.resize(room, 0);
             self.losses.resize(room, Record::ZERO);
         }
         if complete && self.rest.len() < room {
@@ -118,43 +116,50 @@ impl RowTerms {
         }
         self.contacts = 0;
         self.numbers = [0; 3];
-        self.largest_overlap = 0.0;
     }
 
     /// Counts the contacts of eight that are own, in these rows.
     #[inline(always)]
-    pub(super) fn count(&mut self, owned: u8, rows: &[usize; LANES]) {
-        for (lane, row) in rows.iter().enumerate() {
-            self.contacts += usize::from(owned >> lane & 1);
-            self.ends[(*row).min(self.own.grains)] = self.contacts as u32;
-        }
+    pub(super) fn count<M: Machine>(&mut self, owned: Mask<M>, rows: &[u32; LANES]) {
+        let room = self.rows[self.contacts..].first_chunk_mut();
+        owned.choose(rows, room.expect("room for eight more"));
+        self.contacts += owned.count() as usize;
     }
 
-    /// After the last contact.
-    pub(super) fn close(&mut self) {
+    /// After the last contact: finds those of each run of rows.
+    pub(super) fn close(&mut self, runs: &[u32], largest_overlap: f64) {
+        self.largest_overlap = largest_overlap;
+        let rows = &self.rows[..self.contacts];
         let mut end = 0;
-        for of_row in &mut self.ends {
-            end = end.max(*of_row);
-            *of_row = end;
-        }
+        self.ends.clear();
+        self.ends.extend(runs.iter().map(|&behind| {
+            let rest = &rows[end..];
+            // Runs may be long or short.
+            let mut most = 1;
+            while rest.get(most - 1).is_some_and(|&row| row < behind) {
+                most *= 2;
+            }
+            let within = &rest[most / 2..most.min(rest.len())];
+            end += most / 2 + within.partition_point(|&row| row < behind);
+            end as u32
+        }));
     }
 
-    /// The contacts of the grains at places that follow each other.
+    /// The contacts of a run of rows.
     #[inline(always)]
-    fn of_places(&self, places: &Range<usize>) -> Range<usize> {
-        let before = |place: usize| match place - self.own.start {
-            0 => 0,
-            row => self.ends[row - 1] as usize,
-        };
-        before(places.start)..before(places.end)
+    fn of_run(&self, run: usize) -> Range<usize> {
+        let before = run.checked_sub(1).map_or(0, |before| self.ends[before]);
+        before as usize..self.ends[run] as usize
     }
 }
 
 /// Rows of the list that follow each other there and, in one section, in their places too: so do the terms of their contacts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Run {
-    pub(super) section: u16,
-    pub(super) places: Range<usize>,
+    pub(super) section: usize,
+    /// Which of the section's runs.
+    pub(super) number: usize,
+    pub(super) rows: usize,
 }
 
 /// Terms that one thread adds up before another goes on: those of rows of grains, or of the rings of a section.
@@ -175,9 +180,9 @@ impl Leg {
     pub(super) fn of(runs: &[Run], with_rings: usize, legs: &mut Vec<Self>) {
         legs.clear();
         for (number, run) in runs.iter().enumerate() {
-            let section = run.section as usize;
+            let section = run.section;
             match legs.last_mut() {
-                Some(leg) if leg.section == section || run.places.len() < SHORT => {
+                Some(leg) if leg.section == section || run.rows < SHORT => {
                     leg.runs.end = number + 1;
                 }
                 _ => legs.push(Self {
@@ -268,8 +273,8 @@ impl Work for AddContacts<'_> {
     #[inline(always)]
     fn run<M: Machine>(self) {
         for run in &self.runs[self.leg.runs.clone()] {
-            let [Pairs { terms, .. }, _] = &self.pairs[run.section as usize];
-            let contacts = terms.of_places(&run.places);
+            let [Pairs { terms, .. }, _] = &self.pairs[run.section];
+            let contacts = terms.of_run(run.number);
             let losses = &terms.losses[contacts.clone()];
             self.sums.losses.add::<M>(losses);
             if self.complete {

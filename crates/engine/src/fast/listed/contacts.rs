@@ -9,14 +9,14 @@ use super::pairs::Pairs;
 use super::record::{self, Record};
 use super::spheres::{Forces, Moving, Own};
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
-use crate::fast::machine::{Machine, Work, bring_near, eight_of};
+use crate::fast::machine::{Machine, Work, bring_near, eight_of, eight_of_each};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
 
 /// What becomes of the answers of the law.
 trait Outcome<M: Machine> {
-    /// Where the forces on a sphere are added up.
-    fn at(&self, place: usize) -> usize;
+    /// Where the forces on spheres are added up.
+    fn at(&self, places: &[u32; LANES]) -> [u32; LANES];
     fn add(&mut self, eight: &Eight<M>);
 }
 
@@ -24,7 +24,7 @@ trait Outcome<M: Machine> {
 struct Eight<M: Machine> {
     contacts: usize,
     /// Where the forces on their first spheres are added up.
-    rows: [usize; LANES],
+    rows: [u32; LANES],
     answer: ContactForce<Lanes<M>>,
     overlap: Lanes<M>,
     /// Which are with the wall.
@@ -36,6 +36,8 @@ pub(super) struct PairForces<'a, N, T: PackedHistory> {
     pub(super) law: &'a ContactLaw<N, T>,
     pub(super) pairs: &'a mut Pairs,
     pub(super) of_grains: bool,
+    /// Behind which grain of the section each run of its rows ends.
+    pub(super) runs: &'a [u32],
     pub(super) spheres: Moving<'a>,
     /// Their numbers.
     pub(super) number: &'a [u32],
@@ -69,18 +71,16 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
             }
             None => {
                 let mut terms = core::mem::take(&mut self.pairs.terms);
-                // Of the wall's own contacts nobody asks for a row.
-                let grains = if self.of_grains { own.grains } else { 0 };
-                let rows = Own { grains, ..own };
-                terms.clear(rows, self.pairs.contacts, self.complete);
-                let complete = self.complete;
+                terms.clear(self.pairs.contacts, self.complete);
                 let mut of_rows = OfRows {
                     own,
                     terms: &mut terms,
-                    complete,
+                    complete: self.complete,
+                    largest_overlap: Lanes::splat(0.0),
                 };
                 self.work_out::<M>(&mut of_rows);
-                terms.close();
+                let largest_overlap = of_rows.largest_overlap.max_lane();
+                terms.close(self.runs, largest_overlap);
                 self.pairs.terms = terms;
             }
         }
@@ -127,15 +127,15 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
     for start in (0..pairs.contacts).step_by(LANES) {
         let near = pairs.eight_touching(start);
         let contacts = LANES.min(pairs.contacts - start);
-        let first = eight_of(&pairs.near.first, &near).map(|&place| place);
-        let second = eight_of(&pairs.near.second, &near).map(|&place| place);
+        let spheres = [&pairs.near.first[..], &pairs.near.second];
+        let [first, second] = eight_of_each(spheres, &near).map(|eight| eight.map(|&place| place));
         if let Some(near) = pairs.whole_eight_touching(start + AHEAD) {
             // The first spheres follow each other, so that the processor brings them near unasked.
             let second = eight_of(&pairs.near.second, near).map(|&place| place);
             for records in [position, velocity, turning] {
                 bring_near(records, &second);
             }
-            let rows = second.map(|place| outcome.at(place as usize) as u32);
+            let rows = outcome.at(&second);
             bring_near(force, &rows);
             if T::ROTATES {
                 bring_near(torque, &rows);
@@ -145,14 +145,14 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
         let nothing = Quad::<M>::splat(0.0);
         let (mut apart, mut relative) = ([nothing; LANES], [nothing; LANES]);
         let (mut turnings_i, mut turnings_j) = ([nothing; LANES], [nothing; LANES]);
-        let places = [eight_of(position, &first), eight_of(position, &second)];
-        let velocities = [eight_of(velocity, &first), eight_of(velocity, &second)];
-        let turnings = [eight_of(turning, &first), eight_of(turning, &second)];
+        let records = [position, velocity, turning];
+        let [place_i, velocity_i, turning_i] = eight_of_each(records, &first);
+        let [place_j, velocity_j, turning_j] = eight_of_each(records, &second);
         for lane in 0..LANES {
-            apart[lane] = places[0][lane].quad() - places[1][lane].quad();
-            relative[lane] = velocities[0][lane].quad() - velocities[1][lane].quad();
-            turnings_i[lane] = turnings[0][lane].quad();
-            turnings_j[lane] = turnings[1][lane].quad();
+            apart[lane] = place_i[lane].quad() - place_j[lane].quad();
+            relative[lane] = velocity_i[lane].quad() - velocity_j[lane].quad();
+            turnings_i[lane] = turning_i[lane].quad();
+            turnings_j[lane] = turning_j[lane].quad();
         }
         let separation = record::periodic(record::into_lanes::<M>(apart).0, length);
         let (relative_velocity, _) = record::into_lanes::<M>(relative);
@@ -171,9 +171,9 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
         let on_first = record::from_lanes(answer.force, zero);
         let per_arm = record::from_lanes(answer.torque_per_arm, zero);
         let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());
-        let rows = first.map(|place| outcome.at(place as usize));
+        let (rows, columns) = (outcome.at(&first), outcome.at(&second));
         for lane in 0..contacts {
-            let (i, j) = (rows[lane], outcome.at(second[lane] as usize));
+            let (i, j) = (rows[lane] as usize, columns[lane] as usize);
             let (on_first, per_arm) = (on_first[lane], per_arm[lane]);
             force[i] = (force[i].quad() + on_first).record();
             force[j] = (force[j].quad() - on_first).record();
@@ -195,8 +195,8 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
 /// All spheres are in one section: sums are added up at once.
 impl<M: Machine> Outcome<M> for Sums<M> {
     #[inline(always)]
-    fn at(&self, place: usize) -> usize {
-        place
+    fn at(&self, places: &[u32; LANES]) -> [u32; LANES] {
+        *places
     }
 
     #[inline(always)]
@@ -219,16 +219,17 @@ impl<M: Machine> Outcome<M> for Sums<M> {
 }
 
 /// The terms of the contacts in a section's rows of the list are kept.
-struct OfRows<'a> {
+struct OfRows<'a, M: Machine> {
     own: Own,
     terms: &'a mut RowTerms,
     complete: bool,
+    largest_overlap: Lanes<M>,
 }
 
-impl<M: Machine> Outcome<M> for OfRows<'_> {
+impl<M: Machine> Outcome<M> for OfRows<'_, M> {
     #[inline(always)]
-    fn at(&self, place: usize) -> usize {
-        self.own.at(place)
+    fn at(&self, places: &[u32; LANES]) -> [u32; LANES] {
+        self.own.at(places)
     }
 
     #[inline(always)]
@@ -237,6 +238,7 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
             own,
             terms,
             complete,
+            largest_overlap,
         } = self;
         let answer = &eight.answer;
         let zero = Lanes::splat(0.0);
@@ -248,9 +250,14 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
         let losses = record::from_lanes(lost, answer.energy);
         // Of a contact in a row of another section nothing is kept.
         let valid = Mask::<M>::first(eight.contacts).to_bits();
-        let is_own = |lane: usize| eight.rows[lane] < own.number;
-        let owned = (0..LANES).fold(0, |owned, lane| owned | u8::from(is_own(lane)) << lane);
-        let owned = owned & valid;
+        let is_own = |row: u32| row < own.number as u32;
+        // Mostly all are.
+        let owned = match eight.rows.iter().fold(true, |all, &row| all & is_own(row)) {
+            true => valid,
+            false => (0..LANES).fold(0, |owned, lane| {
+                owned | (u8::from(is_own(eight.rows[lane])) << lane & valid)
+            }),
+        };
         write_owned::<M>(&mut terms.losses[terms.contacts..], owned, losses);
         if *complete {
             let axial_force = Lanes::select(eight.with_wall, answer.force.z, zero);
@@ -258,10 +265,10 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
             let rest = record::from_lanes(vector, zero);
             write_owned::<M>(&mut terms.rest[terms.contacts..], owned, rest);
         }
+        let owned = Mask::<M>::from_bits(owned);
         terms.count(owned, &eight.rows);
-        let owned = Mask::from_bits(owned);
         let overlap = Lanes::select(owned, eight.overlap, zero);
-        terms.largest_overlap = terms.largest_overlap.max(overlap.max_lane());
+        *largest_overlap = largest_overlap.max(overlap);
         let with_wall = (owned & eight.with_wall).count();
         let [of_grains, of_wall, sliding] = &mut terms.numbers;
         *of_grains += owned.count() - with_wall;
@@ -274,6 +281,12 @@ impl<M: Machine> Outcome<M> for OfRows<'_> {
 #[inline(always)]
 fn write_owned<M: Machine>(to: &mut [Record], owned: u8, terms: [Quad<M>; LANES]) {
     let to = to.first_chunk_mut::<LANES>().expect("room for eight more");
+    if owned == u8::MAX {
+        for (to, terms) in to.iter_mut().zip(terms) {
+            *to = terms.record();
+        }
+        return;
+    }
     let mut end = 0;
     for (lane, terms) in terms.iter().enumerate() {
         // Those that are not own are written over.

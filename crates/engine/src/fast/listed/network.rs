@@ -8,7 +8,7 @@ use peristalsis_physics::real::{Real, Vector};
 use super::book::{Book, WallTerms};
 use super::record::{self, Record};
 use super::spheres::Moving;
-use crate::fast::columns::Columns;
+use crate::fast::columns::{Columns, ColumnsMut};
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
@@ -18,22 +18,23 @@ use crate::wall::{DriveAngle, ElasticWall, NetForce};
 /// Vectors of the spheres of a ring: sphere p at p + 1; before and after them stand copies of the last and first, which are
 /// their neighbours.
 impl Columns {
-    /// The vectors of all spheres of a ring; answers nothing about their fourth numbers.
+    /// The vectors of all spheres of a ring; their fourth numbers go to `fourth`, sphere p at p.
     #[inline(always)]
-    fn fill_ring<M: Machine>(&mut self, records: &[Record]) {
+    fn fill_ring<M: Machine>(&mut self, records: &[Record], mut fourth: Option<&mut [f64]>) {
+        let mut columns = self.first_mut(room_for(records.len()));
         let (blocks, rest) = records.as_chunks::<LANES>();
         for (block, records) in blocks.iter().enumerate() {
             let mut quads = [Quad::<M>::splat(0.0); LANES];
             for lane in 0..LANES {
                 quads[lane] = records[lane].quad();
             }
-            self.store::<M>(block * LANES + 1, record::into_lanes::<M>(quads).0);
+            fill_eight::<M>(&mut columns, block * LANES, quads, &mut fourth);
         }
         let mut quads = [Quad::<M>::splat(0.0); LANES];
         for (quad, record) in quads.iter_mut().zip(rest) {
             *quad = record.quad();
         }
-        self.store::<M>(blocks.len() * LANES + 1, record::into_lanes::<M>(quads).0);
+        fill_eight::<M>(&mut columns, blocks.len() * LANES, quads, &mut fourth);
         self.close(records.len());
     }
 
@@ -47,6 +48,21 @@ impl Columns {
     }
 }
 
+/// Eight spheres of a ring, from sphere `start` on.
+#[inline(always)]
+fn fill_eight<M: Machine>(
+    columns: &mut ColumnsMut<'_>,
+    start: usize,
+    quads: [Quad<M>; LANES],
+    fourth: &mut Option<&mut [f64]>,
+) {
+    let (vectors, of_eight) = record::into_lanes::<M>(quads);
+    columns.store(start + 1, vectors);
+    if let Some(fourth) = fourth {
+        of_eight.store(fourth, start);
+    }
+}
+
 /// Room for the rings at hand.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
@@ -54,7 +70,9 @@ pub(super) struct Rows {
     velocity: Columns,
     place_above: Columns,
     velocity_above: Columns,
+    /// Turns round the tube, sphere p at p.
     turns: Vec<f64>,
+    turns_above: Vec<f64>,
     /// Forces of the bonds: along the ring, and to the two spheres above.
     along: Columns,
     first: Columns,
@@ -88,8 +106,10 @@ impl Rows {
             row.clear(room_for(spheres));
         }
         let room = spheres.next_multiple_of(LANES);
-        self.turns.clear();
-        self.turns.resize(room, 0.0);
+        for turns in [&mut self.turns, &mut self.turns_above] {
+            turns.clear();
+            turns.resize(room_for(spheres), 0.0);
+        }
         for parity in 0..2 {
             let directions = &wall.directions[parity * spheres..(parity + 1) * spheres];
             self.cos[parity].clear();
@@ -99,6 +119,24 @@ impl Rows {
             self.sin[parity].extend(directions.iter().map(|direction| direction.1));
             self.sin[parity].resize(room, 0.0);
         }
+    }
+}
+
+impl Rows {
+    /// Takes up the ring above.
+    #[inline(always)]
+    fn fill_above<M: Machine>(&mut self, position: &[Record], velocity: &[Record]) {
+        let turns = &mut self.turns_above[..];
+        let place = &mut self.place_above;
+        place.fill_ring::<M>(position, Some(turns));
+        self.velocity_above.fill_ring::<M>(velocity, None);
+    }
+
+    /// The ring above becomes the ring at hand.
+    fn go_up(&mut self) {
+        core::mem::swap(&mut self.place, &mut self.place_above);
+        core::mem::swap(&mut self.velocity, &mut self.velocity_above);
+        core::mem::swap(&mut self.turns, &mut self.turns_above);
     }
 }
 
@@ -174,7 +212,6 @@ impl WallForces<'_> {
         if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.place.x.is_empty() {
             rows.resize(wall);
         }
-        let nothing = Quad::<M>::splat(0.0);
         // The spheres of a ring are in one section.
         let range = |ring: usize| {
             let first = self.places[ring * per_ring] as usize;
@@ -188,37 +225,27 @@ impl WallForces<'_> {
 
         // Forces of the bonds of the ring below on the first.
         let below = range((first + all - 1) % all);
-        rows.place.fill_ring::<M>(&position[below.clone()]);
-        rows.velocity.fill_ring::<M>(&velocity[below]);
-        rows.place_above.fill_ring::<M>(&position[range(first)]);
-        rows.velocity_above.fill_ring::<M>(&velocity[range(first)]);
+        rows.fill_above::<M>(&position[below.clone()], &velocity[below]);
+        rows.go_up();
+        rows.fill_above::<M>(&position[range(first)], &velocity[range(first)]);
         bonds::<M, _, ALL>(wall, rows, (first + 1) % 2, &mut Sums::<M>::default());
         let rings = self.force.chunks_exact_mut(per_ring);
         for (ring, forces) in (first..).zip(rings) {
-            core::mem::swap(&mut rows.place, &mut rows.place_above);
-            core::mem::swap(&mut rows.velocity, &mut rows.velocity_above);
+            rows.go_up();
             let above = range((ring + 1) % all);
-            rows.place_above.fill_ring::<M>(&position[above.clone()]);
-            rows.velocity_above.fill_ring::<M>(&velocity[above]);
-            let here = range(ring);
-            for (turns, place) in rows.turns.iter_mut().zip(&position[here.clone()]) {
-                *turns = place.0[3];
-            }
+            rows.fill_above::<M>(&position[above.clone()], &velocity[above]);
             carry::<M>(rows, ring % 2, per_ring);
             bonds::<M, _, ALL>(wall, rows, ring % 2, book);
             tethers_and_drive::<M, _, ALL>(wall, rows, ring, book);
-            let (mut ring_force, mut ring_velocity) = (nothing, nothing);
-            let blocks = forces.chunks_mut(LANES).zip(velocity[here].chunks(LANES));
-            for (block, (forces, velocities)) in blocks.enumerate() {
-                let more = rows.force.load::<M>(block * LANES + 1);
-                let more = record::from_lanes(more, Lanes::splat(0.0));
-                for (lane, (force, velocity)) in forces.iter_mut().zip(velocities).enumerate() {
-                    let whole = force.quad() + more[lane];
-                    *force = whole.record();
-                    ring_force = ring_force + whole;
-                    ring_velocity = ring_velocity + velocity.quad();
-                }
+            let mut sums = [Quad::<M>::splat(0.0); 2];
+            let (blocks, rest) = forces.as_chunks_mut::<LANES>();
+            let (velocities, rest_velocities) = velocity[range(ring)].as_chunks::<LANES>();
+            let of_rest = blocks.len() * LANES;
+            for (block, (forces, velocities)) in blocks.iter_mut().zip(velocities).enumerate() {
+                add_eight::<M>(&rows.force, block * LANES, forces, velocities, &mut sums);
             }
+            add_eight::<M>(&rows.force, of_rest, rest, rest_velocities, &mut sums);
+            let [ring_force, ring_velocity] = sums;
             if wall.parameters().network.tethers.net_force == NetForce::RemovedPerRing {
                 let mean = ring_force * (1.0 / per_ring as f64);
                 for force in forces.iter_mut() {
@@ -227,6 +254,25 @@ impl WallForces<'_> {
             }
             of_rings.push([ring_force.record(), ring_velocity.record()]);
         }
+    }
+}
+
+/// Adds the forces of up to eight spheres of a ring, from sphere `start` on, to those of their contacts; the sums over the
+/// ring go on.
+#[inline(always)]
+fn add_eight<M: Machine>(
+    more: &Columns,
+    start: usize,
+    forces: &mut [Record],
+    velocities: &[Record],
+    [ring_force, ring_velocity]: &mut [Quad<M>; 2],
+) {
+    let more = record::from_lanes(more.load::<M>(start + 1), Lanes::splat(0.0));
+    for ((force, velocity), more) in forces.iter_mut().zip(velocities).zip(more) {
+        let whole = force.quad() + more;
+        *force = whole.record();
+        *ring_force = *ring_force + whole;
+        *ring_velocity = *ring_velocity + velocity.quad();
     }
 }
 

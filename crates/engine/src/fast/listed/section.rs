@@ -32,6 +32,8 @@ pub(super) struct Section {
     pub(super) forces: Forces,
     pub(super) moved: Moved,
     pub(super) rings: Rings,
+    /// Behind which of its grains each of its runs ends.
+    pub(super) runs: Vec<u32>,
     /// Room: bounds of displacements or velocities of its spheres.
     pub(super) drift: Drift,
 }
@@ -204,6 +206,7 @@ impl Shares {
         self.offers.resize_with(sections, Offer::default);
         for (number, section) in (0..).zip(&mut self.sections) {
             (section.number, section.own) = (number, Own::default());
+            section.runs.clear();
         }
         for (sphere, &section) in self.section_of.iter().enumerate() {
             let own = &mut self.sections[section as usize].own;
@@ -225,13 +228,18 @@ impl Shares {
         let all = of_sections.chain(of_wall.chunk_by(|a, b| a == b));
         let mut sphere = 0;
         for of_section in all {
-            let section = of_section[0];
-            let place = &mut self.next[section as usize];
+            let number = of_section[0] as usize;
+            let place = &mut self.next[number];
             let places = *place..*place + of_section.len();
             *place = places.end;
             if (sphere as usize) < grains {
-                let places = places.clone();
-                self.runs.push(Run { section, places });
+                let section = &mut self.sections[number];
+                self.runs.push(Run {
+                    section: number,
+                    number: section.runs.len(),
+                    rows: of_section.len(),
+                });
+                section.runs.push((places.end - section.own.start) as u32);
             }
             for number in &mut numbers[places] {
                 *number = sphere;

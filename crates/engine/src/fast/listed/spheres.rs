@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::record::Record;
 use crate::bodies::{Bodies, Sphere, fold};
+use crate::fast::lanes::LANES;
 use crate::fast::threads::Cut;
 use crate::integrate::Past;
 use crate::wall::Grains;
@@ -181,10 +182,11 @@ pub(super) struct Own {
 }
 
 impl Own {
-    /// Where the forces on the sphere at a place are added up.
+    /// Where the forces on the spheres at these places are added up.
     #[inline(always)]
-    pub(super) fn at(self, place: usize) -> usize {
-        place.wrapping_sub(self.start).min(self.number)
+    pub(super) fn at(self, places: &[u32; LANES]) -> [u32; LANES] {
+        let (start, number) = (self.start as u32, self.number as u32);
+        places.map(|place| place.wrapping_sub(start).min(number))
     }
 
     /// Whether the sphere at a place belongs to the section.

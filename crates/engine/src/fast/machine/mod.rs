@@ -157,13 +157,29 @@ fn with_avx2<W: Work>(work: W) -> W::Answer {
 /// Where there is no such item.
 #[inline(always)]
 pub(crate) fn eight_of<'a, T>(items: &'a [T], at: &[u32; LANES]) -> [&'a T; LANES] {
-    let end = u32::try_from(items.len()).unwrap_or(u32::MAX);
+    let [eight] = eight_of_each([items], at);
+    eight
+}
+
+/// The same of several slices; the numbers are looked at once for all.
+///
+/// # Panics
+/// Where one of them has no such item.
+#[inline(always)]
+pub(crate) fn eight_of_each<'a, T, const SLICES: usize>(
+    slices: [&'a [T]; SLICES],
+    at: &[u32; LANES],
+) -> [[&'a T; LANES]; SLICES] {
+    let mut end = u32::MAX;
+    for items in slices {
+        end = end.min(u32::try_from(items.len()).unwrap_or(u32::MAX));
+    }
     assert!(
         at.iter().fold(true, |all, &at| all & (at < end)),
         "within the slice"
     );
-    // SAFETY: all are below the length.
-    at.map(|at| unsafe { items.get_unchecked(at as usize) })
+    // SAFETY: all are below the length of each.
+    slices.map(|items| at.map(|at| unsafe { items.get_unchecked(at as usize) }))
 }
 
 /// Asks that eight items of a slice be brought near, where the processor can be asked: they are wanted soon. There need not
