@@ -6,14 +6,14 @@
 
 use core::ops::Range;
 
-use super::network::{MeanForce, Rings};
+use super::network::Rings;
 use super::pairs::Pairs;
 use super::record::Record;
 use crate::fast::lanes::{LANES, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
-use crate::wall::ElasticWall;
+use crate::wall::{ElasticWall, NetForce};
 
 /// Takes the terms of sums over the spheres of a wall, eight side by side; lanes that hold none are 0.
 pub(super) trait Book<M: Machine> {
@@ -248,6 +248,60 @@ pub(super) struct OfContacts {
     rest: InTurn,
 }
 
+/// The mean force that is taken off the spheres of the wall, on its way through the sums over the rings.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct MeanForce {
+    /// Sums of the forces on the spheres of all rings so far, and of their velocities.
+    total: [Record; 2],
+    /// Power of what was taken off ring by ring, with its sign turned.
+    taken_off: f64,
+}
+
+impl MeanForce {
+    /// Adds the rings of a section.
+    pub(super) fn add(&mut self, wall: &ElasticWall, rings: &Rings) {
+        let per_ring = wall.lattice().spheres_per_ring as usize;
+        let network = &wall.parameters().network;
+        for [force, velocity] in &rings.of_rings {
+            if network.tethers.net_force == NetForce::RemovedPerRing {
+                self.taken_off += power_of_mean(force, velocity, per_ring);
+                continue;
+            }
+            for (total, of_ring) in self.total.iter_mut().zip([force, velocity]) {
+                for (total, of_ring) in total.0.iter_mut().zip(of_ring.0) {
+                    *total += of_ring;
+                }
+            }
+        }
+    }
+
+    /// Adds its power to the tally; answers what of it is still to be taken off each sphere.
+    pub(super) fn finish(self, wall: &ElasticWall, tally: &mut Tally) -> Record {
+        match wall.parameters().network.tethers.net_force {
+            NetForce::Free => Record::ZERO,
+            NetForce::RemovedPerRing => {
+                tally.keep_power -= self.taken_off;
+                Record::ZERO
+            }
+            NetForce::Removed => {
+                let [force, velocity] = &self.total;
+                let spheres = wall.lattice().spheres();
+                tally.keep_power -= power_of_mean(force, velocity, spheres);
+                mean(force, spheres)
+            }
+        }
+    }
+}
+
+fn mean(force: &Record, spheres: usize) -> Record {
+    Record(force.0.map(|force| force * (1.0 / spheres as f64)))
+}
+
+/// Power of the mean force on so many spheres, of the sums of forces and velocities.
+fn power_of_mean(force: &Record, velocity: &Record, spheres: usize) -> f64 {
+    mean(force, spheres).vector().dot(velocity.vector())
+}
+
 /// Sums over the rings of the wall, likewise.
 #[derive(Debug, Default)]
 pub(super) struct OfRings {
@@ -362,5 +416,33 @@ impl Work for AddAll<'_> {
         tally.drive_power += drive;
         tally.keep_energy += tethers;
         tally.drag_dissipation += drag;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// Also of runs without contacts, of one row, and of nearly all.
+        #[test]
+        fn each_run_of_rows_has_its_contacts(
+            mut rows in prop::collection::vec(0_u32..60, 0..200),
+            behind in prop::collection::btree_set(1_u32..60, 0..60),
+        ) {
+            rows.sort_unstable();
+            let runs: Vec<u32> = behind.into_iter().chain([60]).collect();
+            let mut terms = RowTerms { contacts: rows.len(), rows: rows.clone(), ..Default::default() };
+            terms.close(&runs, 0.0);
+            let mut before = 0;
+            for (run, &behind) in runs.iter().enumerate() {
+                let own = terms.of_run(run).map(|contact| rows[contact]);
+                let expected = rows.iter().copied().filter(|row| (before..behind).contains(row));
+                prop_assert_eq!(own.collect::<Vec<_>>(), expected.collect::<Vec<_>>());
+                before = behind;
+            }
+        }
     }
 }

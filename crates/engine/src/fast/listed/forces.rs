@@ -4,10 +4,10 @@ use std::sync::{Mutex, PoisonError};
 
 use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
-use super::book::{AddAll, AddContacts, AddRings, OfContacts, OfRings};
+use super::book::{AddAll, AddContacts, AddRings, MeanForce, OfContacts, OfRings};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
-use super::network::{MeanForce, WallForces};
+use super::network::WallForces;
 use super::pairs::{Ended, Pairs};
 use super::section::{BesideWall, Section, Shares};
 use super::spheres::{GrainsMut, Moving, Spheres};

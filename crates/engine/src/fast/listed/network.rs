@@ -8,7 +8,7 @@ use peristalsis_physics::real::{Real, Vector};
 use super::book::{Book, WallTerms};
 use super::record::{self, Record};
 use super::spheres::Moving;
-use crate::fast::columns::{Columns, ColumnsMut};
+use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
@@ -18,26 +18,6 @@ use crate::wall::{DriveAngle, ElasticWall, NetForce};
 /// Vectors of the spheres of a ring: sphere p at p + 1; before and after them stand copies of the last and first, which are
 /// their neighbours.
 impl Columns {
-    /// The vectors of all spheres of a ring; their fourth numbers go to `fourth`, sphere p at p.
-    #[inline(always)]
-    fn fill_ring<M: Machine>(&mut self, records: &[Record], mut fourth: Option<&mut [f64]>) {
-        let mut columns = self.first_mut(room_for(records.len()));
-        let (blocks, rest) = records.as_chunks::<LANES>();
-        for (block, records) in blocks.iter().enumerate() {
-            let mut quads = [Quad::<M>::splat(0.0); LANES];
-            for lane in 0..LANES {
-                quads[lane] = records[lane].quad();
-            }
-            fill_eight::<M>(&mut columns, block * LANES, quads, &mut fourth);
-        }
-        let mut quads = [Quad::<M>::splat(0.0); LANES];
-        for (quad, record) in quads.iter_mut().zip(rest) {
-            *quad = record.quad();
-        }
-        fill_eight::<M>(&mut columns, blocks.len() * LANES, quads, &mut fourth);
-        self.close(records.len());
-    }
-
     /// Copies the ends round.
     #[inline(always)]
     fn close(&mut self, count: usize) {
@@ -48,31 +28,65 @@ impl Columns {
     }
 }
 
-/// Eight spheres of a ring, from sphere `start` on.
-#[inline(always)]
-fn fill_eight<M: Machine>(
-    columns: &mut ColumnsMut<'_>,
-    start: usize,
-    quads: [Quad<M>; LANES],
-    fourth: &mut Option<&mut [f64]>,
-) {
-    let (vectors, of_eight) = record::into_lanes::<M>(quads);
-    columns.store(start + 1, vectors);
-    if let Some(fourth) = fourth {
-        of_eight.store(fourth, start);
+/// The spheres of a ring.
+#[derive(Clone, Debug, Default)]
+struct Ring {
+    place: Columns,
+    velocity: Columns,
+    /// Turns round the tube, sphere p at p.
+    turns: Vec<f64>,
+}
+
+impl Ring {
+    fn clear(&mut self, room: usize) {
+        self.place.clear(room);
+        self.velocity.clear(room);
+        self.turns.clear();
+        self.turns.resize(room, 0.0);
     }
+
+    #[inline(always)]
+    fn take_up<M: Machine>(&mut self, position: &[Record], velocity: &[Record]) {
+        let spheres = position.len();
+        let room = room_for(spheres);
+        let mut places = self.place.first_mut(room);
+        let mut velocities = self.velocity.first_mut(room);
+        for start in (0..spheres).step_by(LANES) {
+            let (vectors, turns) = record::into_lanes::<M>(eight_from::<M>(&position[start..]));
+            places.store(start + 1, vectors);
+            turns.store(&mut self.turns, start);
+            let (vectors, _) = record::into_lanes::<M>(eight_from::<M>(&velocity[start..]));
+            velocities.store(start + 1, vectors);
+        }
+        self.place.close(spheres);
+        self.velocity.close(spheres);
+    }
+}
+
+/// The first eight records, with zeros where there are fewer.
+#[inline(always)]
+fn eight_from<M: Machine>(records: &[Record]) -> [Quad<M>; LANES] {
+    let mut eight = [Quad::<M>::splat(0.0); LANES];
+    match records.first_chunk::<LANES>() {
+        Some(whole) => {
+            for lane in 0..LANES {
+                eight[lane] = whole[lane].quad();
+            }
+        }
+        None => {
+            for (quad, record) in eight.iter_mut().zip(records) {
+                *quad = record.quad();
+            }
+        }
+    }
+    eight
 }
 
 /// Room for the rings at hand.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
-    place: Columns,
-    velocity: Columns,
-    place_above: Columns,
-    velocity_above: Columns,
-    /// Turns round the tube, sphere p at p.
-    turns: Vec<f64>,
-    turns_above: Vec<f64>,
+    here: Ring,
+    above: Ring,
     /// Forces of the bonds: along the ring, and to the two spheres above.
     along: Columns,
     first: Columns,
@@ -92,11 +106,10 @@ fn room_for(spheres: usize) -> usize {
 impl Rows {
     fn resize(&mut self, wall: &ElasticWall) {
         let spheres = wall.lattice().spheres_per_ring as usize;
+        for ring in [&mut self.here, &mut self.above] {
+            ring.clear(room_for(spheres));
+        }
         for row in [
-            &mut self.place,
-            &mut self.velocity,
-            &mut self.place_above,
-            &mut self.velocity_above,
             &mut self.along,
             &mut self.first,
             &mut self.second,
@@ -106,10 +119,6 @@ impl Rows {
             row.clear(room_for(spheres));
         }
         let room = spheres.next_multiple_of(LANES);
-        for turns in [&mut self.turns, &mut self.turns_above] {
-            turns.clear();
-            turns.resize(room_for(spheres), 0.0);
-        }
         for parity in 0..2 {
             let directions = &wall.directions[parity * spheres..(parity + 1) * spheres];
             self.cos[parity].clear();
@@ -122,30 +131,12 @@ impl Rows {
     }
 }
 
-impl Rows {
-    /// Takes up the ring above.
-    #[inline(always)]
-    fn fill_above<M: Machine>(&mut self, position: &[Record], velocity: &[Record]) {
-        let turns = &mut self.turns_above[..];
-        let place = &mut self.place_above;
-        place.fill_ring::<M>(position, Some(turns));
-        self.velocity_above.fill_ring::<M>(velocity, None);
-    }
-
-    /// The ring above becomes the ring at hand.
-    fn go_up(&mut self) {
-        core::mem::swap(&mut self.place, &mut self.place_above);
-        core::mem::swap(&mut self.velocity, &mut self.velocity_above);
-        core::mem::swap(&mut self.turns, &mut self.turns_above);
-    }
-}
-
 /// Room for the rings of a section, and what their forces and velocities come to.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rings {
     rows: Rows,
     /// Sums of the forces on the spheres of each ring, and of their velocities.
-    of_rings: Vec<[Record; 2]>,
+    pub(super) of_rings: Vec<[Record; 2]>,
     /// Where there are several sections.
     pub(super) terms: WallTerms,
 }
@@ -209,7 +200,7 @@ impl WallForces<'_> {
         } = self.spheres;
         let lattice = wall.lattice();
         let (per_ring, all) = (lattice.spheres_per_ring as usize, lattice.rings() as usize);
-        if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.place.x.is_empty() {
+        if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.force.x.is_empty() {
             rows.resize(wall);
         }
         // The spheres of a ring are in one section.
@@ -225,15 +216,17 @@ impl WallForces<'_> {
 
         // Forces of the bonds of the ring below on the first.
         let below = range((first + all - 1) % all);
-        rows.fill_above::<M>(&position[below.clone()], &velocity[below]);
-        rows.go_up();
-        rows.fill_above::<M>(&position[range(first)], &velocity[range(first)]);
+        rows.here
+            .take_up::<M>(&position[below.clone()], &velocity[below]);
+        rows.above
+            .take_up::<M>(&position[range(first)], &velocity[range(first)]);
         bonds::<M, _, ALL>(wall, rows, (first + 1) % 2, &mut Sums::<M>::default());
         let rings = self.force.chunks_exact_mut(per_ring);
         for (ring, forces) in (first..).zip(rings) {
-            rows.go_up();
+            core::mem::swap(&mut rows.here, &mut rows.above);
             let above = range((ring + 1) % all);
-            rows.fill_above::<M>(&position[above.clone()], &velocity[above]);
+            rows.above
+                .take_up::<M>(&position[above.clone()], &velocity[above]);
             carry::<M>(rows, ring % 2, per_ring);
             bonds::<M, _, ALL>(wall, rows, ring % 2, book);
             tethers_and_drive::<M, _, ALL>(wall, rows, ring, book);
@@ -274,60 +267,6 @@ fn add_eight<M: Machine>(
         *ring_force = *ring_force + whole;
         *ring_velocity = *ring_velocity + velocity.quad();
     }
-}
-
-/// The mean force that is taken off the spheres of the wall, on its way through the sums over the rings.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct MeanForce {
-    /// Sums of the forces on the spheres of all rings so far, and of their velocities.
-    total: [Record; 2],
-    /// Power of what was taken off ring by ring, with its sign turned.
-    taken_off: f64,
-}
-
-impl MeanForce {
-    /// Adds the rings of a section.
-    pub(super) fn add(&mut self, wall: &ElasticWall, rings: &Rings) {
-        let per_ring = wall.lattice().spheres_per_ring as usize;
-        let network = &wall.parameters().network;
-        for [force, velocity] in &rings.of_rings {
-            if network.tethers.net_force == NetForce::RemovedPerRing {
-                self.taken_off += power_of_mean(force, velocity, per_ring);
-                continue;
-            }
-            for (total, of_ring) in self.total.iter_mut().zip([force, velocity]) {
-                for (total, of_ring) in total.0.iter_mut().zip(of_ring.0) {
-                    *total += of_ring;
-                }
-            }
-        }
-    }
-
-    /// Adds its power to the tally; answers what of it is still to be taken off each sphere.
-    pub(super) fn finish(self, wall: &ElasticWall, tally: &mut Tally) -> Record {
-        match wall.parameters().network.tethers.net_force {
-            NetForce::Free => Record::ZERO,
-            NetForce::RemovedPerRing => {
-                tally.keep_power -= self.taken_off;
-                Record::ZERO
-            }
-            NetForce::Removed => {
-                let [force, velocity] = &self.total;
-                let spheres = wall.lattice().spheres();
-                tally.keep_power -= power_of_mean(force, velocity, spheres);
-                mean(force, spheres)
-            }
-        }
-    }
-}
-
-fn mean(force: &Record, spheres: usize) -> Record {
-    Record(force.0.map(|force| force * (1.0 / spheres as f64)))
-}
-
-/// Power of the mean force on so many spheres, of the sums of forces and velocities.
-fn power_of_mean(force: &Record, velocity: &Record, spheres: usize) -> f64 {
-    mean(force, spheres).vector().dot(velocity.vector())
 }
 
 /// Turns the forces of the last ring's bonds into forces on this ring, whose parity is `parity`.
@@ -397,9 +336,9 @@ fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
         length: parameters.lattice.length(),
     };
     let room = room_for(per_ring);
-    let (place, velocity) = (rows.place.first(room), rows.velocity.first(room));
-    let place_above = rows.place_above.first(room);
-    let velocity_above = rows.velocity_above.first(room);
+    let (place, velocity) = (rows.here.place.first(room), rows.here.velocity.first(room));
+    let place_above = rows.above.place.first(room);
+    let velocity_above = rows.above.velocity.first(room);
     let mut on_along = rows.along.first_mut(room);
     let mut on_first = rows.first.first_mut(room);
     let mut on_second = rows.second.first_mut(room);
@@ -458,11 +397,11 @@ fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
     let reference_z = Lanes::splat(lattice.axial_position(ring as u32));
     let parity = ring % 2;
     let (room, in_lanes) = (room_for(per_ring), per_ring.next_multiple_of(LANES));
-    let (places, velocities) = (rows.place.first(room), rows.velocity.first(room));
+    let (places, velocities) = (rows.here.place.first(room), rows.here.velocity.first(room));
     let (along, carried) = (rows.along.first(room), rows.carried.first(room));
     let (first, second) = (rows.first.first(room), rows.second.first(room));
     let (cos, sin) = (&rows.cos[parity][..in_lanes], &rows.sin[parity][..in_lanes]);
-    let turns = &rows.turns[..in_lanes];
+    let turns = &rows.here.turns[..in_lanes];
     let mut force = rows.force.first_mut(room);
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);

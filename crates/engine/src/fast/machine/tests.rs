@@ -127,3 +127,18 @@ proptest! {
         prop_assert_eq!(&plain.1[10..], &[set, chosen].concat());
     }
 }
+
+#[test]
+fn eight_items_lie_within_every_slice() {
+    let (long, short): (Vec<u32>, Vec<u32>) = ((0..20).collect(), (100..110).collect());
+    let within = [9, 0, 3, 3, 8, 1, 2, 7];
+    let [one, other] = eight_of_each([&long[..], &short[..]], &within);
+    assert_eq!(one.map(|&item| item), within);
+    assert_eq!(other.map(|&item| item), within.map(|at| at + 100));
+    for lane in 0..LANES {
+        let mut at = within;
+        at[lane] = 10;
+        let looks = || eight_of_each([&long[..], &short[..]], &at).len();
+        assert!(std::panic::catch_unwind(looks).is_err(), "lane {lane}");
+    }
+}
