@@ -222,7 +222,7 @@ fn check_places(simulation: &Simulation) -> Result<(), RunError> {
 
 /// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end
 /// the program later, in the middle of its work.
-fn check_memory(configuration: &Configuration) -> Result<(), RunError> {
+pub(crate) fn check_memory(configuration: &Configuration) -> Result<(), RunError> {
     let spheres = moving_spheres(configuration);
     let bytes = spheres.saturating_mul(BYTES_PER_SPHERE);
     let mut room: Vec<u8> = Vec::new();

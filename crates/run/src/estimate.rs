@@ -9,7 +9,7 @@ use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use crate::RunError;
 use crate::assemble::{
-    check_number, moving_spheres, newtonian_reference, scheduled_wavelengths, walls,
+    check_memory, check_number, moving_spheres, newtonian_reference, scheduled_wavelengths, walls,
 };
 use crate::run::Run;
 use crate::si::SiEstimate;
@@ -140,6 +140,7 @@ pub fn estimate_by(
         let later: Vec<Warning> = later.filter(is_new).map(in_the_end).collect();
         warnings.extend(later);
     }
+    warnings.extend(no_memory(configuration));
     let si = configuration.units.as_ref();
     Ok(Estimate {
         grains: configuration.grains.number,
@@ -210,6 +211,15 @@ fn memory(configuration: &Configuration) -> f64 {
         + of_sphere * moving_spheres(configuration) as f64
         + (size_of::<Sample>() as f64) * samples.min(MOST_ROWS as f64)
         + (size_of::<WaveFlow>() as f64) * waves.min(MOST_ROWS as f64)
+}
+
+/// That this machine would refuse the run.
+fn no_memory(configuration: &Configuration) -> Option<Warning> {
+    let refused = check_memory(configuration).err()?;
+    Some(Warning {
+        key: "tube.waves",
+        message: format!("{refused} here: on this machine it would not run"),
+    })
 }
 
 /// Threads that pay for a configuration on this machine.

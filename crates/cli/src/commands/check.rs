@@ -127,11 +127,16 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             lines.push(format!("                  gravity [{x}, {y}, {z}] m/s^2"));
         }
         if si.body_force_m_per_s2 != 0.0 {
-            lines.push(format!(
-                "                  body force {} m/s^2 along the wave, weight included: a pressure rise of {} Pa over a wavelength",
-                significant(si.body_force_m_per_s2, 4),
-                significant(si.pressure_rise_pa, 4)
-            ));
+            let force = significant(si.body_force_m_per_s2, 4);
+            lines.push(match estimate.period {
+                Some(_) => format!(
+                    "                  body force {force} m/s^2 along the wave, weight included: a pressure rise of {} Pa over a wavelength",
+                    significant(si.pressure_rise_pa, 4)
+                ),
+                None => format!(
+                    "                  body force {force} m/s^2 along the tube, weight included"
+                ),
+            });
         }
     }
     let [expected, packing] = [estimate.expected_seconds, estimate.packing_seconds].map(seconds);

@@ -95,7 +95,11 @@ fn title(configuration: &Configuration) -> String {
         ScheduledParameter::StrainRate,
         configuration.drive.strain_rate,
     );
-    let number = || format!("*N* = {}", configuration.grains.number);
+    let waiting = configuration.inlet.map_or(0, |inlet| inlet.waiting);
+    let number = || match (configuration.grains.number, waiting) {
+        (number, 0) => format!("*N* = {number}"),
+        (number, _) => format!("*N* = {number}, {waiting} of them waiting at first"),
+    };
     let rest = particular(configuration).unwrap_or_else(number);
     format!(
         "{control},  *ε\u{307}* = {rate} {},  {density}{rest}",
