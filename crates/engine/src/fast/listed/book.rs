@@ -9,7 +9,7 @@ use core::ops::Range;
 use super::network::Rings;
 use super::pairs::Pairs;
 use super::record::Record;
-use crate::fast::lanes::{LANES, Lanes, Mask, Quad};
+use crate::fast::lanes::{LANES, Lanes, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
@@ -86,19 +86,16 @@ fn to_arrays<M: Machine>([one, two]: [Lanes<M>; 2]) -> [[f64; LANES]; 2] {
     [one.to_array(), two.to_array()]
 }
 
-/// Terms of the contacts in the rows of a section, which wait to be added.
+/// Terms of the contacts of a section, of which those in its rows of the list wait to be added.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RowTerms {
-    /// Of each contact the row in the section; and room for eight more.
-    rows: Vec<u32>,
-    /// Behind which contact those of each run of rows end.
-    ends: Vec<u32>,
+    /// The contacts of each run of rows.
+    pub(super) runs: Vec<Range<usize>>,
     /// Of each contact normal dissipation, tangential loss, sliding loss, energy; and room for eight more.
     pub(super) losses: Vec<Record>,
     /// Of each contact overlap and axial force of the wall, where all sums are wanted; and room for eight more.
     pub(super) rest: Vec<Record>,
-    pub(super) contacts: usize,
-    /// Of grains with grains, of grains with the wall, and of those that slide.
+    /// Of grains with grains, of grains with the wall, and of those that slide, in its rows.
     pub(super) numbers: [u64; 3],
     pub(super) largest_overlap: f64,
 }
@@ -108,48 +105,13 @@ impl RowTerms {
     pub(super) fn clear(&mut self, contacts: usize, complete: bool) {
         let room = contacts + LANES;
         if self.losses.len() < room {
-            self.rows.resize(room, 0);
             self.losses.resize(room, Record::ZERO);
         }
         if complete && self.rest.len() < room {
             self.rest.resize(room, Record::ZERO);
         }
-        self.contacts = 0;
+        self.runs.clear();
         self.numbers = [0; 3];
-    }
-
-    /// Counts the contacts of eight that are own, in these rows.
-    #[inline(always)]
-    pub(super) fn count<M: Machine>(&mut self, owned: Mask<M>, rows: &[u32; LANES]) {
-        let room = self.rows[self.contacts..].first_chunk_mut();
-        owned.choose(rows, room.expect("room for eight more"));
-        self.contacts += owned.count() as usize;
-    }
-
-    /// After the last contact: finds those of each run of rows.
-    pub(super) fn close(&mut self, runs: &[u32], largest_overlap: f64) {
-        self.largest_overlap = largest_overlap;
-        let rows = &self.rows[..self.contacts];
-        let mut end = 0;
-        self.ends.clear();
-        self.ends.extend(runs.iter().map(|&behind| {
-            let rest = &rows[end..];
-            // Runs may be long or short.
-            let mut most = 1;
-            while rest.get(most - 1).is_some_and(|&row| row < behind) {
-                most *= 2;
-            }
-            let within = &rest[most / 2..most.min(rest.len())];
-            end += most / 2 + within.partition_point(|&row| row < behind);
-            end as u32
-        }));
-    }
-
-    /// The contacts of a run of rows.
-    #[inline(always)]
-    fn of_run(&self, run: usize) -> Range<usize> {
-        let before = run.checked_sub(1).map_or(0, |before| self.ends[before]);
-        before as usize..self.ends[run] as usize
     }
 }
 
@@ -328,7 +290,7 @@ impl Work for AddContacts<'_> {
     fn run<M: Machine>(self) {
         for run in &self.runs[self.leg.runs.clone()] {
             let [Pairs { terms, .. }, _] = &self.pairs[run.section];
-            let contacts = terms.of_run(run.number);
+            let contacts = terms.runs[run.number].clone();
             let losses = &terms.losses[contacts.clone()];
             self.sums.losses.add::<M>(losses);
             if self.complete {
@@ -403,7 +365,9 @@ impl Work for AddAll<'_> {
             tally.wall_contacts += with_wall;
             tally.sliding_contacts += that_slide;
             tally.largest_overlap = tally.largest_overlap.max(terms.largest_overlap);
-            of_wall.add::<M>(&wall.losses[..wall.contacts]);
+            for run in &wall.runs {
+                of_wall.add::<M>(&wall.losses[run.clone()]);
+            }
         }
         // Contacts of wall spheres with each other are no contacts of grains.
         let [normal, _, _, energy] = of_wall.sum();
@@ -416,33 +380,5 @@ impl Work for AddAll<'_> {
         tally.drive_power += drive;
         tally.keep_energy += tethers;
         tally.drag_dissipation += drag;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-
-    proptest! {
-        /// Also of runs without contacts, of one row, and of nearly all.
-        #[test]
-        fn each_run_of_rows_has_its_contacts(
-            mut rows in prop::collection::vec(0_u32..60, 0..200),
-            behind in prop::collection::btree_set(1_u32..60, 0..60),
-        ) {
-            rows.sort_unstable();
-            let runs: Vec<u32> = behind.into_iter().chain([60]).collect();
-            let mut terms = RowTerms { contacts: rows.len(), rows: rows.clone(), ..Default::default() };
-            terms.close(&runs, 0.0);
-            let mut before = 0;
-            for (run, &behind) in runs.iter().enumerate() {
-                let own = terms.of_run(run).map(|contact| rows[contact]);
-                let expected = rows.iter().copied().filter(|row| (before..behind).contains(row));
-                prop_assert_eq!(own.collect::<Vec<_>>(), expected.collect::<Vec<_>>());
-                before = behind;
-            }
-        }
     }
 }

@@ -22,6 +22,8 @@ trait Outcome<M: Machine> {
 
 /// The answers for eight contacts, or for as many as there are.
 struct Eight<M: Machine> {
+    /// The first of them.
+    start: usize,
     contacts: usize,
     /// Where the forces on their first spheres are added up.
     rows: [u32; LANES],
@@ -36,8 +38,6 @@ pub(super) struct PairForces<'a, N, T: PackedHistory> {
     pub(super) law: &'a ContactLaw<N, T>,
     pub(super) pairs: &'a mut Pairs,
     pub(super) of_grains: bool,
-    /// Behind which grain of the section each run of its rows ends.
-    pub(super) runs: &'a [u32],
     pub(super) spheres: Moving<'a>,
     /// Their numbers.
     pub(super) number: &'a [u32],
@@ -71,7 +71,7 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
             }
             None => {
                 let mut terms = core::mem::take(&mut self.pairs.terms);
-                terms.clear(self.pairs.contacts, self.complete);
+                terms.clear(self.pairs.contacts(), self.complete);
                 let mut of_rows = OfRows {
                     own,
                     terms: &mut terms,
@@ -79,8 +79,8 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
                     largest_overlap: Lanes::splat(0.0),
                 };
                 self.work_out::<M>(&mut of_rows);
-                let largest_overlap = of_rows.largest_overlap.max_lane();
-                terms.close(self.runs, largest_overlap);
+                terms.largest_overlap = of_rows.largest_overlap.max_lane();
+                terms.runs.extend(self.pairs.contacts_of_runs());
                 self.pairs.terms = terms;
             }
         }
@@ -124,9 +124,9 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
     // Of one length: looked at once.
     let torque = &mut forces.torque[..force.len()];
     let zero = Lanes::<M>::splat(0.0);
-    for start in (0..pairs.contacts).step_by(LANES) {
+    for start in (0..pairs.contacts()).step_by(LANES) {
         let near = pairs.eight_touching(start);
-        let contacts = LANES.min(pairs.contacts - start);
+        let contacts = LANES.min(pairs.contacts() - start);
         let spheres = [&pairs.near.first[..], &pairs.near.second];
         let [first, second] = eight_of_each(spheres, &near).map(|eight| eight.map(|&place| place));
         if let Some(near) = pairs.whole_eight_touching(start + AHEAD) {
@@ -183,6 +183,7 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
             }
         }
         outcome.add(&Eight {
+            start,
             contacts,
             rows,
             answer,
@@ -218,7 +219,7 @@ impl<M: Machine> Outcome<M> for Sums<M> {
     }
 }
 
-/// The terms of the contacts in a section's rows of the list are kept.
+/// The terms of all contacts are kept, and those in the section's rows of the list are counted.
 struct OfRows<'a, M: Machine> {
     own: Own,
     terms: &'a mut RowTerms,
@@ -234,12 +235,7 @@ impl<M: Machine> Outcome<M> for OfRows<'_, M> {
 
     #[inline(always)]
     fn add(&mut self, eight: &Eight<M>) {
-        let Self {
-            own,
-            terms,
-            complete,
-            largest_overlap,
-        } = self;
+        let terms = &mut *self.terms;
         let answer = &eight.answer;
         let zero = Lanes::splat(0.0);
         let lost = LaneVector::new(
@@ -248,27 +244,25 @@ impl<M: Machine> Outcome<M> for OfRows<'_, M> {
             answer.tangential.slid,
         );
         let losses = record::from_lanes(lost, answer.energy);
-        // Of a contact in a row of another section nothing is kept.
-        let valid = Mask::<M>::first(eight.contacts).to_bits();
-        let is_own = |row: u32| row < own.number as u32;
-        // Mostly all are.
-        let owned = match eight.rows.iter().fold(true, |all, &row| all & is_own(row)) {
-            true => valid,
-            false => (0..LANES).fold(0, |owned, lane| {
-                owned | (u8::from(is_own(eight.rows[lane])) << lane & valid)
-            }),
-        };
-        write_owned::<M>(&mut terms.losses[terms.contacts..], owned, losses);
-        if *complete {
+        write_down::<M>(&mut terms.losses[eight.start..], losses);
+        if self.complete {
             let axial_force = Lanes::select(eight.with_wall, answer.force.z, zero);
             let vector = LaneVector::new(eight.overlap, axial_force, zero);
             let rest = record::from_lanes(vector, zero);
-            write_owned::<M>(&mut terms.rest[terms.contacts..], owned, rest);
+            write_down::<M>(&mut terms.rest[eight.start..], rest);
         }
-        let owned = Mask::<M>::from_bits(owned);
-        terms.count(owned, &eight.rows);
-        let overlap = Lanes::select(owned, eight.overlap, zero);
-        *largest_overlap = largest_overlap.max(overlap);
+        let valid = Mask::first(eight.contacts);
+        let overlap = Lanes::select(valid, eight.overlap, zero);
+        self.largest_overlap = self.largest_overlap.max(overlap);
+        let is_own = |row: u32| row < self.own.number as u32;
+        // Mostly all are.
+        let owned = match eight.rows.iter().fold(true, |all, &row| all & is_own(row)) {
+            true => valid,
+            false => {
+                let bit = |lane: usize| u8::from(is_own(eight.rows[lane])) << lane;
+                valid & Mask::from_bits((0..LANES).fold(0, |bits, lane| bits | bit(lane)))
+            }
+        };
         let with_wall = (owned & eight.with_wall).count();
         let [of_grains, of_wall, sliding] = &mut terms.numbers;
         *of_grains += owned.count() - with_wall;
@@ -277,20 +271,11 @@ impl<M: Machine> Outcome<M> for OfRows<'_, M> {
     }
 }
 
-/// Writes down, one after the other, the terms of the lanes that are own.
+/// Writes down the terms of eight contacts, or of as many as there are and some that nobody reads.
 #[inline(always)]
-fn write_owned<M: Machine>(to: &mut [Record], owned: u8, terms: [Quad<M>; LANES]) {
+fn write_down<M: Machine>(to: &mut [Record], terms: [Quad<M>; LANES]) {
     let to = to.first_chunk_mut::<LANES>().expect("room for eight more");
-    if owned == u8::MAX {
-        for (to, terms) in to.iter_mut().zip(terms) {
-            *to = terms.record();
-        }
-        return;
-    }
-    let mut end = 0;
-    for (lane, terms) in terms.iter().enumerate() {
-        // Those that are not own are written over.
-        to[end] = terms.record();
-        end += usize::from(owned >> lane & 1);
+    for (to, terms) in to.iter_mut().zip(terms) {
+        *to = terms.record();
     }
 }

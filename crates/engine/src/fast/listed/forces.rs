@@ -63,8 +63,6 @@ impl<'a, N: NormalLaw, T: PackedHistory> Evaluation<'a, N, T> {
                 law: self.law,
                 pairs,
                 of_grains,
-                // Of the wall's own contacts nobody asks for a row.
-                runs: if of_grains { &section.runs } else { &[] },
                 spheres: self.spheres,
                 number: self.number,
                 forces: &mut section.forces,

@@ -3,6 +3,8 @@
 //! A pair across the border of two sections is in both. One pass over the pairs writes down which of them touch; the law is
 //! then evaluated for those only ([`super::contacts`]), in the order of the list. Which pairs touch does not depend on the other pairs of the list, so neither do the results.
 
+use core::ops::Range;
+
 use peristalsis_physics::real::Real;
 
 use super::book::RowTerms;
@@ -51,20 +53,20 @@ impl Flat {
         self.reach.resize(whole, 0.0);
     }
 
-    /// Writes down, in order, the pairs that are closer than their reach and `skin`; answers how many there are.
+    /// Finds the pairs that are closer than their reach and `skin`.
     #[inline(always)]
-    pub(super) fn find<M: Machine>(
-        &self,
-        position: &[Record],
-        length: f64,
-        skin: f64,
-        found: &mut Vec<u32>,
-    ) -> usize {
+    fn find<M: Machine>(&self, position: &[Record], length: f64, skin: f64, found: &mut Found) {
+        let Found {
+            pairs,
+            number: end,
+            eights,
+        } = found;
         let room = self.first.len() + LANES;
-        if found.len() < room {
-            found.resize(room, 0);
+        if pairs.len() < room {
+            pairs.resize(room, 0);
         }
-        let mut end = 0;
+        *end = 0;
+        eights.clear();
         let (skin, whole) = (Lanes::splat(skin), Lanes::splat(length));
         let seconds = self.second.as_chunks::<LANES>().0;
         let blocks = self.first.as_chunks::<LANES>().0.iter();
@@ -86,11 +88,40 @@ impl Flat {
             let reach = Lanes::load(reach, 0) + skin;
             // Coincident centres have no normal.
             let near = squared.less(reach * reach) & Lanes::splat(0.0).less(squared);
-            let window = found[end..].first_chunk_mut().expect("room for a block");
+            let window = pairs[*end..].first_chunk_mut().expect("room for a block");
             near.write_down((block * LANES) as u32, window);
-            end += near.count() as usize;
+            eights.push((*end as u32, near.to_bits()));
+            *end += near.count() as usize;
         }
-        end
+        eights.push((*end as u32, 0));
+    }
+}
+
+/// The pairs of a [`Flat`] that were found, in order.
+#[derive(Clone, Debug, Default)]
+struct Found {
+    /// Their places in it; behind them are others.
+    pairs: Vec<u32>,
+    number: usize,
+    /// Of each eight pairs how many were found before them, and which of them were, a bit for each. One more stands behind.
+    eights: Vec<(u32, u8)>,
+}
+
+impl Found {
+    fn all(&self) -> &[u32] {
+        &self.pairs[..self.number]
+    }
+
+    /// How many of the first so many pairs were found.
+    fn of_first(&self, pairs: usize) -> usize {
+        let (before, found) = self.eights[pairs / LANES];
+        let those = found & ((1 << (pairs % LANES)) - 1);
+        before as usize + those.count_ones() as usize
+    }
+
+    /// Which of those found are of these pairs.
+    fn of(&self, pairs: &Range<usize>) -> Range<usize> {
+        self.of_first(pairs.start)..self.of_first(pairs.end)
     }
 }
 
@@ -120,13 +151,13 @@ pub(super) struct Pairs {
     list: Flat,
     /// The place of each in the list of all.
     at: Vec<u32>,
-    /// The pairs that may touch before others are chosen.
+    /// The pairs that may touch before others are chosen, and which of the list they are.
     pub(super) near: Flat,
-    /// Which pair of the list each of them is.
-    pub(super) number: Vec<u32>,
-    /// The near pairs that touch, so many.
-    touching: Vec<u32>,
-    pub(super) contacts: usize,
+    chosen: Found,
+    /// Which of the near pairs touch.
+    touching: Found,
+    /// The pairs of each run of the section's rows: in the list, and those near.
+    runs: [Vec<Range<usize>>; 2],
     /// What contacts remember.
     pub(super) memory: Memory,
     /// Since the last evaluation; it adds up their energies.
@@ -136,24 +167,35 @@ pub(super) struct Pairs {
 }
 
 impl Pairs {
-    /// Takes up `rows` of a list and, in its order, the pairs at the border whose second sphere is in the section.
+    /// Takes up the rows of a list for the spheres at the places of `runs`, which follow each other in the list, and, in its
+    /// order, the pairs at the border whose second sphere is in the section.
     pub(super) fn load<H: Copy + Default + PartialEq>(
         &mut self,
         list: &Neighbours<H>,
-        rows: impl Iterator<Item = usize>,
+        runs: impl Iterator<Item = Range<usize>>,
         borders: &[Border],
         spheres: &Spheres,
     ) {
         self.list.clear();
         self.at.clear();
+        self.runs[0].clear();
         let mut borders = borders.iter().peekable();
-        for row in rows {
-            while let Some(border) = borders.next_if(|border| (border.first as usize) < row) {
-                self.take_border(border, spheres);
+        for run in runs {
+            // The wall's spheres may have no rows.
+            let numbers = &spheres.number[run.clone()];
+            let rows = numbers.partition_point(|&number| (number as usize) < list.rows());
+            if let Some(&row) = numbers[..rows].first() {
+                while let Some(border) = borders.next_if(|border| border.first < row) {
+                    self.take_border(border, spheres);
+                }
             }
-            let first = spheres.place[row] as usize;
-            self.list.extend(first, list.partners(row), spheres);
-            self.at.extend(list.range(row).map(|at| at as u32));
+            let begin = self.at.len();
+            for (first, &row) in run.zip(&numbers[..rows]) {
+                self.list
+                    .extend(first, list.partners(row as usize), spheres);
+                self.at.extend(list.range(row as usize).map(|at| at as u32));
+            }
+            self.runs[0].push(begin..self.at.len());
         }
         borders.for_each(|border| self.take_border(border, spheres));
         self.list.fill_up();
@@ -234,9 +276,18 @@ impl Pairs {
     /// Finds the near pairs that touch.
     #[inline(always)]
     pub(super) fn find_contacts<M: Machine>(&mut self, position: &[Record], length: f64) {
-        self.contacts = self
-            .near
-            .find::<M>(position, length, 0.0, &mut self.touching);
+        let touching = &mut self.touching;
+        self.near.find::<M>(position, length, 0.0, touching);
+    }
+
+    /// How many near pairs touch.
+    pub(super) fn contacts(&self) -> usize {
+        self.touching.number
+    }
+
+    /// Which of the contacts are of each run of rows.
+    pub(super) fn contacts_of_runs(&self) -> impl Iterator<Item = Range<usize>> {
+        self.runs[1].iter().map(|near| self.touching.of(near))
     }
 
     /// The near pairs of the contacts from `start` on; of the last eight, those to spare are the last once more.
@@ -245,7 +296,8 @@ impl Pairs {
         match self.whole_eight_touching(start) {
             Some(eight) => *eight,
             None => {
-                core::array::from_fn(|lane| self.touching[(start + lane).min(self.contacts - 1)])
+                let last = self.contacts() - 1;
+                core::array::from_fn(|lane| self.touching.pairs[(start + lane).min(last)])
             }
         }
     }
@@ -253,7 +305,7 @@ impl Pairs {
     /// The same, where there are eight contacts from `start` on.
     #[inline(always)]
     pub(super) fn whole_eight_touching(&self, start: usize) -> Option<&[u32; LANES]> {
-        self.touching[..self.contacts].get(start..)?.first_chunk()
+        self.touching.all().get(start..)?.first_chunk()
     }
 
     /// Finds the histories of the pairs that touch, and ends those of the pairs that touch no more.
@@ -261,14 +313,13 @@ impl Pairs {
     pub(super) fn begin_contacts<T: PackedHistory>(&mut self, law: &T, own: Own, numbers: &[u32]) {
         let Self {
             list,
-            number,
+            chosen,
             touching,
-            contacts,
             memory,
             ended,
             ..
         } = self;
-        memory.begin(&touching[..*contacts], number, |k, history| {
+        memory.begin(touching.all(), &chosen.pairs, |k, history| {
             let [first, second] = [list.first[k], list.second[k]];
             if own.holds(first as usize) {
                 let spheres = [first, second].map(|place| numbers[place as usize]);
@@ -301,18 +352,68 @@ impl Work for Prune<'_> {
         let Pairs {
             list,
             near,
-            number,
+            chosen,
+            runs: [listed, of_near],
             memory,
             ..
         } = self.pairs;
-        let chosen = list.find::<M>(self.position, self.length, self.skin, number);
+        list.find::<M>(self.position, self.length, self.skin, chosen);
         near.clear();
-        let chosen = number[..chosen].iter().map(|&k| k as usize);
-        near.first.extend(chosen.clone().map(|k| list.first[k]));
-        near.second.extend(chosen.clone().map(|k| list.second[k]));
-        near.reach.extend(chosen.map(|k| list.reach[k]));
+        let pairs = chosen.all().iter().map(|&k| k as usize);
+        near.first.extend(pairs.clone().map(|k| list.first[k]));
+        near.second.extend(pairs.clone().map(|k| list.second[k]));
+        near.reach.extend(pairs.map(|k| list.reach[k]));
         near.fill_up();
+        of_near.clear();
+        of_near.extend(listed.iter().map(|run| chosen.of(run)));
         // No more of them can touch, so that warm steps take no memory.
         memory.reserve(near.first.capacity());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::fast::machine::Instructions;
+
+    struct Find<'a>(&'a Flat, &'a [Record], &'a mut Found);
+
+    impl Work for Find<'_> {
+        type Answer = ();
+
+        #[inline(always)]
+        fn run<M: Machine>(self) {
+            let Self(flat, position, found) = self;
+            flat.find::<M>(position, 1000.0, 0.0, found);
+        }
+    }
+
+    proptest! {
+        /// Twice in the same room, with more pairs and with fewer.
+        #[test]
+        fn it_is_known_how_many_of_the_first_pairs_were_found(
+            lists in prop::array::uniform2(prop::collection::vec(prop::bool::ANY, 0..70)),
+        ) {
+            let position: Vec<Record> = [0.0, 0.5, 5.0].map(|z| Record([0.0, 0.0, z, 0.0])).into();
+            let mut found = Found::default();
+            for near in lists {
+                let mut flat = Flat {
+                    first: vec![0; near.len()],
+                    second: near.iter().map(|&near| if near { 1 } else { 2 }).collect(),
+                    reach: vec![1.0; near.len()],
+                };
+                flat.fill_up();
+                Instructions::default().run(Find(&flat, &position, &mut found));
+                let expected = (0..).zip(&near).filter_map(|(pair, &near)| near.then_some(pair));
+                let expected: Vec<u32> = expected.collect();
+                prop_assert_eq!(found.all(), &expected[..]);
+                for pairs in 0..=near.len() {
+                    let before = expected.iter().filter(|&&pair| (pair as usize) < pairs);
+                    prop_assert_eq!(found.of_first(pairs), before.count());
+                }
+            }
+        }
     }
 }

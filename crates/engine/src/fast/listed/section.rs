@@ -3,8 +3,6 @@
 //! A contact across a border is computed on both sides, with the same result. The section that holds its row of the list
 //! counts it.
 
-use core::ops::Range;
-
 use super::book::{Leg, Run};
 use super::motion::Moved;
 use super::network::Rings;
@@ -92,13 +90,14 @@ impl Section {
         let of_wall_begin =
             borders.partition_point(|border| (border.first as usize) < spheres.grains);
         let (at_grains, at_wall) = borders.split_at(of_wall_begin);
-        let rows = |places: Range<usize>| {
-            let numbers = spheres.number[places].iter().map(|&number| number as usize);
-            numbers.filter(|&row| row < list.rows())
-        };
-        let grains = rows(self.own.of_grains());
-        of_grains.load(list, grains, at_grains, spheres);
-        let wall = rows(self.own.of_wall());
+        let start = self.own.start;
+        let mut behind = start;
+        let runs = self.runs.iter().map(|&end| {
+            let first = core::mem::replace(&mut behind, start + end as usize);
+            first..behind
+        });
+        of_grains.load(list, runs, at_grains, spheres);
+        let wall = core::iter::once(self.own.of_wall());
         of_wall.load(list, wall, at_wall, spheres);
     }
 }
