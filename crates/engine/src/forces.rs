@@ -26,6 +26,8 @@ pub(crate) struct Reference<'a, N, T: TangentialLaw> {
     pub(crate) limit: f64,
     /// Period of the tube \[d\].
     pub(crate) length: f64,
+    /// Sums of the last evaluation.
+    pub(crate) sums: Tally,
 }
 
 impl<N: NormalLaw, T: TangentialLaw> Stepper for Reference<'_, N, T> {
@@ -43,13 +45,16 @@ impl<N: NormalLaw, T: TangentialLaw> Stepper for Reference<'_, N, T> {
         evaluate(self.law, &mut bodies, wall, &mut contacts, time_step)
     }
 
-    fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {
+    fn evaluate(&mut self, wall: &Wall, _complete: bool) {
         let (parameters, time_step) = (self.parameters, self.parameters.time_step);
         self.contacts.refresh(self.bodies, wall, parameters.skin);
-        let tally = evaluate(self.law, self.bodies, wall, self.contacts, time_step);
+        self.sums = evaluate(self.law, self.bodies, wall, self.contacts, time_step);
         add_body_force(self.bodies, parameters.body_force);
         after_forces(parameters.integrator, self.bodies, self.past, time_step);
-        tally
+    }
+
+    fn sums(&mut self) -> Tally {
+        self.sums
     }
 
     fn finish(&mut self) -> Result<(), Runaway> {

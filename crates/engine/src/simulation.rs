@@ -204,6 +204,7 @@ impl Simulation {
                             parameters,
                             limit: *limit,
                             length,
+                            sums: Tally::default(),
                         }
                     };
                 }

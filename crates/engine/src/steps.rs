@@ -15,7 +15,10 @@ pub(crate) trait Stepper {
     fn tally(&mut self, wall: &Wall) -> Tally;
 
     /// Works out all forces at the end of the step. Sums that only observers read may be left out unless `complete`.
-    fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally;
+    fn evaluate(&mut self, wall: &Wall, complete: bool);
+
+    /// The sums of the last evaluation. They may be added up while spheres move, so they cost less after that.
+    fn sums(&mut self) -> Tally;
 
     /// Brings the velocities to the end of the last step.
     fn finish(&mut self) -> Result<(), Runaway>;
@@ -45,22 +48,34 @@ impl Course {
             return Ok(());
         }
         for remaining in (0..steps).rev() {
+            let is_first = remaining == steps - 1;
             self.step += 1;
             let time = self.time();
-            kernel.move_spheres()?;
+            let moved = kernel.move_spheres();
+            if !is_first {
+                self.book(kernel.sums());
+            }
+            moved?;
 
             // A wall that jumps does work on the contacts that it finds: the difference of what they store and lose after
             // the jump and would without it.
             let jumps = self.wall.move_without_jump(time - self.time_step, time);
             let without_jump = jumps.then(|| kernel.tally(&self.wall).stored_and_lost());
             self.wall.move_to(time);
-            let after = kernel.evaluate(&self.wall, remaining == 0 || jumps);
+            kernel.evaluate(&self.wall, remaining == 0 || jumps);
             if let Some(without_jump) = without_jump {
-                self.ledger.add_jump(after.stored_and_lost() - without_jump);
+                let work = kernel.sums().stored_and_lost() - without_jump;
+                self.ledger.add_jump(work);
             }
-            self.ledger.add_step(&self.tally, &after, self.time_step);
-            self.tally = after;
         }
-        kernel.finish()
+        let finished = kernel.finish();
+        self.book(kernel.sums());
+        finished
+    }
+
+    /// Takes the sums at the end of a step up.
+    fn book(&mut self, after: Tally) {
+        self.ledger.add_step(&self.tally, &after, self.time_step);
+        self.tally = after;
     }
 }

@@ -173,9 +173,26 @@ impl Threads {
     pub(crate) fn each<S: Send, P: Cut>(
         &self,
         stretches: &mut [S],
+        all: P,
+        length: &(impl Fn(&S) -> usize + Sync),
+        work: &(impl Fn(&mut S, P) + Sync),
+    ) {
+        let none = Chains::<(), 0> {
+            legs: [],
+            stretch: &|()| 0,
+            work: &|()| (),
+        };
+        self.each_beside(stretches, all, length, work, &none);
+    }
+
+    /// Does that, and the legs of the chains.
+    pub(crate) fn each_beside<S: Send, P: Cut, L: Sync, const CHAINS: usize>(
+        &self,
+        stretches: &mut [S],
         mut all: P,
         length: &(impl Fn(&S) -> usize + Sync),
         work: &(impl Fn(&mut S, P) + Sync),
+        chains: &Chains<'_, L, CHAINS>,
     ) {
         let Some(team) = self.team() else {
             for stretch in stretches {
@@ -183,6 +200,7 @@ impl Threads {
                 all = rest;
                 work(stretch, own);
             }
+            chains.legs.into_iter().flatten().for_each(chains.work);
             return;
         };
         let number = stretches.len();
@@ -196,12 +214,17 @@ impl Threads {
         // The next stretch of each thread.
         let next = (0..threads).map(|owner| Apart(AtomicUsize::new(owner * number / threads)));
         let next: Vec<_> = next.collect();
+        let done = [const { AtomicUsize::new(0) }; CHAINS];
         team.call(&|| {
-            let thread = self.index().unwrap_or(0);
+            let index = self.index();
+            let belongs = |leg: &L| Some(self.owner((chains.stretch)(leg), number)) == index;
+            let mut next_leg = [0; CHAINS];
+            let thread = index.unwrap_or(0);
             for owner in (thread..threads).chain(0..thread) {
-                let (Apart(next), end) = (&next[owner], (owner + 1) * number / threads);
-                while next.load(Ordering::Relaxed) < end {
-                    let part = next.fetch_add(1, Ordering::Relaxed);
+                let (Apart(next_part), end) = (&next[owner], (owner + 1) * number / threads);
+                while next_part.load(Ordering::Relaxed) < end {
+                    chains.go_on(&done, &mut next_leg, &belongs, false);
+                    let part = next_part.fetch_add(1, Ordering::Relaxed);
                     let part = parts[..end].get(part);
                     let part = part.and_then(|part| part.lock().ok()?.take());
                     if let Some((stretch, own)) = part {
@@ -209,45 +232,55 @@ impl Threads {
                     }
                 }
             }
-        });
-    }
-
-    /// Does `work` with the legs of each chain, one after the other. Each is done by the thread to which the stretch of that
-    /// leg, of so many, belongs (see [`Threads::each`]), or by the caller where that does not come in time. A chain goes on
-    /// before another ends.
-    pub(crate) fn in_turn<L: Sync, const CHAINS: usize>(
-        &self,
-        chains: [&[L]; CHAINS],
-        stretches: usize,
-        stretch: &(impl Fn(&L) -> usize + Sync),
-        work: &(impl Fn(&L) + Sync),
-    ) {
-        let done = [const { AtomicUsize::new(0) }; CHAINS];
-        if let Some(team) = self.team() {
-            team.call(&|| {
-                let Some(thread) = self.index() else {
-                    return;
-                };
-                for (legs, done) in chains.iter().zip(&done) {
-                    let legs = legs.iter().enumerate();
-                    let belongs = |leg| self.owner(stretch(leg), stretches) == thread;
-                    for (turn, leg) in legs.filter(|(_, leg)| belongs(leg)) {
-                        if !wait_for(turn, done) {
-                            return;
-                        }
-                        work(leg);
-                        done.store(turn + 1, Ordering::Release);
-                    }
-                }
+            if chains.go_on(&done, &mut next_leg, &belongs, true) {
                 // Others may wait for a leg that nobody does if this thread leaves and the call ends.
-                for (legs, done) in chains.iter().zip(&done) {
+                for (legs, done) in chains.legs.iter().zip(&done) {
                     wait_for(legs.len(), done);
                 }
-            });
+            }
+        });
+        for (legs, done) in chains.legs.into_iter().zip(done) {
+            legs[done.into_inner()..].iter().for_each(chains.work);
         }
-        for (legs, done) in chains.into_iter().zip(done) {
-            legs[done.into_inner()..].iter().for_each(work);
+    }
+}
+
+/// Chains of legs; the legs of a chain are done one after the other.
+pub(crate) struct Chains<'a, L, const CHAINS: usize> {
+    pub(crate) legs: [&'a [L]; CHAINS],
+    /// The stretch that a leg belongs to, and so does its thread: this does the leg between its stretches or behind them. Of a
+    /// thread that does not come in time the caller does it.
+    pub(crate) stretch: &'a (dyn Fn(&L) -> usize + Sync),
+    pub(crate) work: &'a (dyn Fn(&L) + Sync),
+}
+
+impl<L, const CHAINS: usize> Chains<'_, L, CHAINS> {
+    /// Does the legs from `next` on that belong to this thread, while their turn has come; if it `waits`, all, and answers
+    /// false where the turn of one does not come.
+    fn go_on(
+        &self,
+        done: &[AtomicUsize; CHAINS],
+        next: &mut [usize; CHAINS],
+        belongs: &impl Fn(&L) -> bool,
+        waits: bool,
+    ) -> bool {
+        for ((legs, done), next) in self.legs.iter().zip(done).zip(next) {
+            while let Some(leg) = legs.get(*next) {
+                if belongs(leg) {
+                    let turn_has_come = done.load(Ordering::Acquire) >= *next;
+                    if !turn_has_come && !waits {
+                        break;
+                    }
+                    if !turn_has_come && !wait_for(*next, done) {
+                        return false;
+                    }
+                    (self.work)(leg);
+                    done.store(*next + 1, Ordering::Release);
+                }
+                *next += 1;
+            }
         }
+        true
     }
 }
 

@@ -5,12 +5,13 @@
 //! thread that wrote them, which hands the sums on, so that few terms go from core to core.
 
 use core::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 use super::network::Rings;
 use super::pairs::Pairs;
 use super::record::Record;
 use crate::fast::lanes::{LANES, Lanes, Quad};
-use crate::fast::machine::{Machine, Work};
+use crate::fast::machine::{Instructions, Machine, Work};
 use crate::fast::sums::Sums;
 use crate::ledger::Tally;
 use crate::wall::{ElasticWall, NetForce};
@@ -205,13 +206,13 @@ impl InTurn {
 
 /// Sums over the contacts of grains, on their way from thread to thread.
 #[derive(Debug, Default)]
-pub(super) struct OfContacts {
+struct OfContacts {
     losses: InTurn,
     rest: InTurn,
 }
 
-/// The mean force that is taken off the spheres of the wall, on its way through the sums over the rings.
-#[derive(Clone, Copy, Debug, Default)]
+/// The mean force that is taken off the spheres of the wall.
+#[derive(Debug, Default)]
 pub(super) struct MeanForce {
     /// Sums of the forces on the spheres of all rings so far, and of their velocities.
     total: [Record; 2],
@@ -220,8 +221,15 @@ pub(super) struct MeanForce {
 }
 
 impl MeanForce {
+    /// What of it is still to be taken off each sphere of these rings, all of the wall; its power goes to the tally.
+    pub(super) fn of(wall: &ElasticWall, rings: &[Rings], tally: &mut Tally) -> Record {
+        let mut mean_force = Self::default();
+        rings.iter().for_each(|rings| mean_force.add(wall, rings));
+        mean_force.finish(wall, tally)
+    }
+
     /// Adds the rings of a section.
-    pub(super) fn add(&mut self, wall: &ElasticWall, rings: &Rings) {
+    fn add(&mut self, wall: &ElasticWall, rings: &Rings) {
         let per_ring = wall.lattice().spheres_per_ring as usize;
         let network = &wall.parameters().network;
         for [force, velocity] in &rings.of_rings {
@@ -237,8 +245,7 @@ impl MeanForce {
         }
     }
 
-    /// Adds its power to the tally; answers what of it is still to be taken off each sphere.
-    pub(super) fn finish(self, wall: &ElasticWall, tally: &mut Tally) -> Record {
+    fn finish(self, wall: &ElasticWall, tally: &mut Tally) -> Record {
         match wall.parameters().network.tethers.net_force {
             NetForce::Free => Record::ZERO,
             NetForce::RemovedPerRing => {
@@ -264,23 +271,86 @@ fn power_of_mean(force: &Record, velocity: &Record, spheres: usize) -> f64 {
     mean(force, spheres).vector().dot(velocity.vector())
 }
 
-/// Sums over the rings of the wall, likewise.
-#[derive(Debug, Default)]
-pub(super) struct OfRings {
-    /// Energy and dissipation of bonds, power of the drive, energy of tethers and dissipation by drag.
-    lanes: [[f64; LANES]; 5],
-    pub(super) mean_force: MeanForce,
+/// Sums over the rings of the wall, likewise: energy and dissipation of bonds, power of the drive, energy of tethers and
+/// dissipation by drag.
+type OfRings = [[f64; LANES]; 5];
+
+/// An evaluation whose sums are being added up.
+pub(super) struct Adding<'a> {
+    instructions: Instructions,
+    terms: AllTerms<'a>,
+    /// Whether all sums are wanted.
+    complete: bool,
+    of_contacts: Mutex<OfContacts>,
+    of_rings: Mutex<OfRings>,
+}
+
+/// Where the terms are, and in which order they are added.
+#[derive(Clone, Copy)]
+pub(super) struct AllTerms<'a> {
+    pub(super) pairs: &'a [[Pairs; 2]],
+    pub(super) rings: &'a [Rings],
+    /// All rows, in the order of the list.
+    pub(super) runs: &'a [Run],
+    pub(super) legs: &'a [Leg],
+}
+
+impl<'a> Adding<'a> {
+    pub(super) fn new(instructions: Instructions, terms: AllTerms<'a>, complete: bool) -> Self {
+        Self {
+            instructions,
+            terms,
+            complete,
+            of_contacts: Mutex::default(),
+            of_rings: Mutex::default(),
+        }
+    }
+
+    /// The legs of contacts, and those of rings.
+    pub(super) fn chains(&self) -> [&'a [Leg]; 2] {
+        let legs = self.terms.legs;
+        let (of_contacts, of_rings) = legs.split_at(legs.partition_point(|leg| !leg.of_rings));
+        [of_contacts, of_rings]
+    }
+
+    /// Adds the terms of a leg.
+    pub(super) fn add(&self, leg: &Leg) {
+        match leg.of_rings {
+            true => self.instructions.run(AddRings {
+                rings: &self.terms.rings[leg.section],
+                sums: &mut self.of_rings.lock().unwrap_or_else(PoisonError::into_inner),
+            }),
+            false => self.instructions.run(AddContacts {
+                leg,
+                terms: self.terms,
+                sums: &mut self
+                    .of_contacts
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner),
+                complete: self.complete,
+            }),
+        }
+    }
+
+    /// When all legs are done: adds the sums to the tally.
+    pub(super) fn finish(self, tally: &mut Tally) {
+        let of_contacts = self.of_contacts.into_inner();
+        let of_rings = self.of_rings.into_inner();
+        self.instructions.run(AddAll {
+            of_contacts: of_contacts.unwrap_or_else(PoisonError::into_inner),
+            of_rings: of_rings.unwrap_or_else(PoisonError::into_inner),
+            pairs: self.terms.pairs,
+            tally,
+        });
+    }
 }
 
 /// Adds the terms of the contacts of a leg.
-pub(super) struct AddContacts<'a> {
-    pub(super) leg: &'a Leg,
-    pub(super) pairs: &'a [[Pairs; 2]],
-    /// All rows, in the order of the list.
-    pub(super) runs: &'a [Run],
-    pub(super) sums: &'a mut OfContacts,
-    /// Whether all sums are wanted.
-    pub(super) complete: bool,
+struct AddContacts<'a> {
+    leg: &'a Leg,
+    terms: AllTerms<'a>,
+    sums: &'a mut OfContacts,
+    complete: bool,
 }
 
 impl Work for AddContacts<'_> {
@@ -288,8 +358,9 @@ impl Work for AddContacts<'_> {
 
     #[inline(always)]
     fn run<M: Machine>(self) {
-        for run in &self.runs[self.leg.runs.clone()] {
-            let [Pairs { terms, .. }, _] = &self.pairs[run.section];
+        let AllTerms { pairs, runs, .. } = self.terms;
+        for run in &runs[self.leg.runs.clone()] {
+            let [Pairs { terms, .. }, _] = &pairs[run.section];
             let contacts = terms.runs[run.number].clone();
             let losses = &terms.losses[contacts.clone()];
             self.sums.losses.add::<M>(losses);
@@ -301,10 +372,9 @@ impl Work for AddContacts<'_> {
 }
 
 /// Adds the terms of the rings of a section.
-pub(super) struct AddRings<'a> {
-    pub(super) wall: &'a ElasticWall,
-    pub(super) rings: &'a Rings,
-    pub(super) sums: &'a mut OfRings,
+struct AddRings<'a> {
+    rings: &'a Rings,
+    sums: &'a mut OfRings,
 }
 
 impl Work for AddRings<'_> {
@@ -312,9 +382,8 @@ impl Work for AddRings<'_> {
 
     #[inline(always)]
     fn run<M: Machine>(self) {
-        let Self { wall, rings, sums } = self;
-        sums.mean_force.add(wall, rings);
-        let mut lanes = sums.lanes.map(|sum| Lanes::<M>::from_array(&sum));
+        let Self { rings, sums } = self;
+        let mut lanes = sums.map(|sum| Lanes::<M>::from_array(&sum));
         let [bonds, bonds_lose, drive, tethers, drag] = &mut lanes;
         for [energy, dissipation] in &rings.terms.bonds {
             *bonds += Lanes::from_array(energy);
@@ -327,16 +396,16 @@ impl Work for AddRings<'_> {
             *tethers += Lanes::from_array(energy);
             *drag += Lanes::from_array(dissipation);
         }
-        sums.lanes = lanes.map(Lanes::to_array);
+        *sums = lanes.map(Lanes::to_array);
     }
 }
 
 /// Adds what is left when all legs are done, and the sums to the tally.
-pub(super) struct AddAll<'a> {
-    pub(super) of_contacts: OfContacts,
-    pub(super) of_rings: OfRings,
-    pub(super) pairs: &'a [[Pairs; 2]],
-    pub(super) tally: &'a mut Tally,
+struct AddAll<'a> {
+    of_contacts: OfContacts,
+    of_rings: OfRings,
+    pairs: &'a [[Pairs; 2]],
+    tally: &'a mut Tally,
 }
 
 impl Work for AddAll<'_> {
@@ -373,7 +442,7 @@ impl Work for AddAll<'_> {
         let [normal, _, _, energy] = of_wall.sum();
         tally.normal_dissipation += normal;
         tally.contact_energy += energy;
-        let of_rings = of_rings.lanes.map(|sum| Lanes::<M>::from_array(&sum).sum());
+        let of_rings = of_rings.map(|sum| Lanes::<M>::from_array(&sum).sum());
         let [bonds, bonds_lose, drive, tethers, drag] = of_rings;
         tally.network_energy += bonds;
         tally.network_dissipation += bonds_lose;

@@ -1,13 +1,11 @@
 //! All forces on the spheres: of the only section as they are found, of several shared out to threads.
 
-use std::sync::{Mutex, PoisonError};
-
 use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
-use super::book::{AddAll, AddContacts, AddRings, MeanForce, OfContacts, OfRings};
+use super::book::{Adding, MeanForce};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
-use super::network::WallForces;
+use super::network::{Rings, WallForces};
 use super::pairs::{Ended, Pairs};
 use super::section::{BesideWall, Section, Shares};
 use super::spheres::{GrainsMut, Moving, Spheres};
@@ -75,11 +73,17 @@ impl<'a, N: NormalLaw, T: PackedHistory> Evaluation<'a, N, T> {
     }
 
     /// Forces of a section's elastic wall; sums likewise.
-    fn push(&self, wall: &ElasticWall, section: &mut Section, tally: Option<&mut Tally>) {
+    fn push(
+        &self,
+        wall: &ElasticWall,
+        section: &mut Section,
+        rings: &mut Rings,
+        tally: Option<&mut Tally>,
+    ) {
         let [force, _] = section.forces.of_wall();
         self.instructions.run(WallForces {
             wall,
-            rings: &mut section.rings,
+            rings,
             spheres: self.spheres,
             places: self.places,
             first: section.own.of_wall().start,
@@ -127,14 +131,12 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             wall.add_forces(law, &mut grains, memory, time_step, tally);
             return;
         };
-        evaluation.push(elastic, section, Some(tally));
-        let mut mean_force = MeanForce::default();
-        mean_force.add(elastic, &section.rings);
-        self.mean_wall_force = mean_force.finish(elastic, tally);
+        evaluation.push(elastic, section, &mut shares.rings[0], Some(tally));
+        self.mean_wall_force = MeanForce::of(elastic, &shares.rings, tally);
     }
 
-    /// The same by several threads: for each section its contacts and then the forces of its wall, and when all are done the
-    /// terms of the contacts in the order of the list.
+    /// The same by several threads: for each section its contacts and then the forces of its wall. Terms of most sums are
+    /// still to be added.
     pub(super) fn share_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
         let Scratch {
             instructions,
@@ -144,23 +146,21 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             ended,
             ..
         } = &mut *self.scratch;
-        let (instructions, grains) = (*instructions, spheres.grains);
-        let evaluation = Evaluation::new(&self.reference, spheres, instructions, complete);
+        let evaluation = Evaluation::new(&self.reference, spheres, *instructions, complete);
         let elastic = wall.elastic();
         let Shares {
             sections,
             pairs,
-            runs,
-            legs,
-            section_of,
+            rings,
             ..
         } = shares;
         if let Some(elastic) = elastic {
-            threads.each(sections, &mut pairs[..], &|_| 1, &|section, pairs| {
-                for pairs in pairs {
+            let all = (&mut pairs[..], &mut rings[..]);
+            threads.each(sections, all, &|_| 1, &|section, (pairs, rings)| {
+                for (pairs, rings) in pairs.iter_mut().zip(rings) {
                     evaluation.touch(section, pairs, [None, None]);
+                    evaluation.push(elastic, section, rings, None);
                 }
-                evaluation.push(elastic, section, None);
             });
         } else {
             let all = (&mut pairs[..], &mut self.beside_wall[..]);
@@ -175,51 +175,43 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
                 }
             });
         }
-        let (pairs, runs) = (&pairs[..], &runs[..]);
-        let (of_grains, with_rings) = legs.split_at(legs.partition_point(|leg| !leg.of_rings));
-        let of_contacts = Mutex::new(OfContacts::default());
-        let of_rings = Mutex::new(OfRings::default());
-        let chains = [of_grains, with_rings];
-        threads.in_turn(
-            chains,
-            sections.len(),
-            &|leg| leg.section,
-            &|leg| match elastic {
-                Some(wall) if leg.of_rings => instructions.run(AddRings {
-                    wall,
-                    rings: &sections[leg.section].rings,
-                    sums: &mut of_rings.lock().unwrap_or_else(PoisonError::into_inner),
-                }),
-                _ => instructions.run(AddContacts {
-                    leg,
-                    pairs,
-                    runs,
-                    sums: &mut of_contacts.lock().unwrap_or_else(PoisonError::into_inner),
-                    complete,
-                }),
-            },
-        );
-        let of_rings = of_rings.into_inner();
-        let of_rings = of_rings.unwrap_or_else(PoisonError::into_inner);
-        let of_contacts = of_contacts.into_inner();
-        let mean_force = of_rings.mean_force;
-        instructions.run(AddAll {
-            of_contacts: of_contacts.unwrap_or_else(PoisonError::into_inner),
-            of_rings,
-            pairs,
-            tally,
-        });
         add_ended(&mut shares.pairs, ended, tally);
-        let Some(elastic) = elastic else {
-            for &section in &section_of[..grains] {
-                self.beside_wall[section as usize].sums.add_row(tally);
-            }
-            for BesideWall { sums, .. } in &mut self.beside_wall {
-                sums.clear();
-            }
+        if let Some(elastic) = elastic {
+            self.mean_wall_force = MeanForce::of(elastic, rings, tally);
+        }
+    }
+
+    /// Adds up what is still owed, if any, here and now.
+    pub(super) fn add_owed(&mut self) {
+        let Some(complete) = self.owed.take() else {
             return;
         };
-        self.mean_wall_force = mean_force.finish(elastic, tally);
+        let Scratch {
+            instructions,
+            shares,
+            ..
+        } = &mut *self.scratch;
+        let (_, terms) = shares.with_terms();
+        let adding = Adding::new(*instructions, terms, complete);
+        let legs = adding.chains().into_iter().flatten();
+        legs.for_each(|leg| adding.add(leg));
+        adding.finish(&mut self.sums);
+        self.add_beside_wall();
+    }
+
+    /// Adds the sums over contacts with a prescribed wall, where several threads serve it, behind those of all others.
+    pub(super) fn add_beside_wall(&mut self) {
+        if self.beside_wall.is_empty() {
+            return;
+        }
+        let grains = self.scratch.spheres.grains;
+        for &section in &self.scratch.shares.section_of[..grains] {
+            let BesideWall { sums, .. } = &mut self.beside_wall[section as usize];
+            sums.add_row(&mut self.sums);
+        }
+        for BesideWall { sums, .. } in &mut self.beside_wall {
+            sums.clear();
+        }
     }
 }
 

@@ -21,6 +21,7 @@ use core::ops::Range;
 
 use peristalsis_physics::contact::NormalLaw;
 
+use self::book::{Adding, Leg};
 use self::history::PackedHistory;
 use self::motion::{Motion, Moved, Stage, Travel};
 use self::pairs::{Ended, Prune};
@@ -30,7 +31,7 @@ use self::spheres::Spheres;
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::fast::machine::Instructions;
-use crate::fast::threads::{Cut, Threads};
+use crate::fast::threads::{Chains, Cut, Threads};
 use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
 use crate::ledger::Tally;
@@ -95,6 +96,10 @@ struct Listed<'a, N, T: PackedHistory> {
     stage: Stage,
     /// Still to be taken off the force on each sphere of the wall.
     mean_wall_force: Record,
+    /// Sums of the last evaluation.
+    sums: Tally,
+    /// Where terms of them are still to be added: whether all are wanted.
+    owed: Option<bool>,
     /// Since pairs were last chosen from the list.
     travelled: Travel,
     /// The sections' contacts with a prescribed wall, where several threads serve it.
@@ -308,6 +313,8 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             scratch,
             stage: Stage::First,
             mean_wall_force: Record::ZERO,
+            sums: Tally::default(),
+            owed: None,
             // The list may have been made long ago, and nothing is chosen from it yet.
             travelled: Travel {
                 axial: f64::INFINITY,
@@ -317,6 +324,7 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         }
     }
 
+    /// Moves the spheres, and meanwhile adds up the sums of the last evaluation.
     fn pass(&mut self) -> Result<Travel, Runaway> {
         let Scratch {
             instructions,
@@ -325,13 +333,22 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             shares,
             ..
         } = &mut *self.scratch;
+        let instructions = *instructions;
+        let (sections, terms) = shares.with_terms();
+        let owed = self.owed.take();
+        let adding = owed.map(|complete| Adding::new(instructions, terms, complete));
+        let chains = Chains {
+            legs: adding.as_ref().map_or([&[], &[]], Adding::chains),
+            stretch: &|leg: &Leg| leg.section,
+            work: &|leg| adding.iter().for_each(|adding| adding.add(leg)),
+        };
         let parameters = self.reference.parameters;
         let (stage, mean_wall_force) = (self.stage, self.mean_wall_force);
         let (limit, length) = (self.reference.limit, self.reference.length);
         let integrator = spheres.prepare_to_move(parameters.integrator, stage);
         let number = core::mem::take(&mut spheres.number);
-        threads.each(
-            &mut shares.sections,
+        threads.each_beside(
+            sections,
             spheres.all_mut(),
             &Section::length,
             &|section, spheres| {
@@ -361,10 +378,16 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
                 }
                 section.moved = moved;
             },
+            &chains,
         );
         spheres.number = number;
-        let moved = shares.sections.iter().map(|section| section.moved);
-        moved.fold(Moved::default(), Moved::and).travel()
+        let moved = sections.iter().map(|section| section.moved);
+        let moved = moved.fold(Moved::default(), Moved::and);
+        if let Some(adding) = adding {
+            adding.finish(&mut self.sums);
+            self.add_beside_wall();
+        }
+        moved.travel()
     }
 
     /// Chooses the pairs that may touch in the steps to come; makes the list anew where it does not hold them all.
@@ -448,7 +471,7 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         evaluate(reference.law, &mut bodies, wall, &mut contacts, time_step)
     }
 
-    fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally {
+    fn evaluate(&mut self, wall: &Wall, complete: bool) {
         if self
             .travelled
             .exceeds(CHOSEN * self.reference.parameters.skin)
@@ -458,9 +481,17 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         let mut tally = Tally::default();
         match self.scratch.threads.several() {
             false => self.add_forces(wall, complete, &mut tally),
-            true => self.share_forces(wall, complete, &mut tally),
+            true => {
+                self.share_forces(wall, complete, &mut tally);
+                self.owed = Some(complete);
+            }
         }
-        tally
+        self.sums = tally;
+    }
+
+    fn sums(&mut self) -> Tally {
+        self.add_owed();
+        self.sums
     }
 
     fn finish(&mut self) -> Result<(), Runaway> {

@@ -3,7 +3,7 @@
 //! A contact across a border is computed on both sides, with the same result. The section that holds its row of the list
 //! counts it.
 
-use super::book::{Leg, Run};
+use super::book::{AllTerms, Leg, Run};
 use super::motion::Moved;
 use super::network::Rings;
 use super::pairs::{Border, Pairs};
@@ -29,7 +29,6 @@ pub(super) struct Section {
     pub(super) own: Own,
     pub(super) forces: Forces,
     pub(super) moved: Moved,
-    pub(super) rings: Rings,
     /// Behind which of its grains each of its runs ends.
     pub(super) runs: Vec<u32>,
     /// Room: bounds of displacements or velocities of its spheres.
@@ -56,6 +55,8 @@ pub(super) struct Shares {
     /// The pairs of each whose first sphere is a grain, and those of wall spheres only.
     pub(super) pairs: Vec<[Pairs; 2]>,
     pub(super) offers: Vec<Offer>,
+    /// The rings of each.
+    pub(super) rings: Vec<Rings>,
     /// All rows of grains, in the order of the list.
     pub(super) runs: Vec<Run>,
     /// In which the terms of their contacts, and of the rings, are added up.
@@ -134,6 +135,17 @@ impl Offer {
 }
 
 impl Shares {
+    /// The sections, and the terms of their sums.
+    pub(super) fn with_terms(&mut self) -> (&mut [Section], AllTerms<'_>) {
+        let terms = AllTerms {
+            pairs: &self.pairs,
+            rings: &self.rings,
+            runs: &self.runs,
+            legs: &self.legs,
+        };
+        (&mut self.sections, terms)
+    }
+
     /// Whether sections reach so far into each other that they are better shared out again.
     pub(super) fn are_worn(&self) -> bool {
         let pairs = self.pairs.iter().map(|[of_grains, _]| of_grains.listed());
@@ -203,6 +215,7 @@ impl Shares {
         self.sections.resize_with(sections, Section::default);
         self.pairs.resize_with(sections, Default::default);
         self.offers.resize_with(sections, Offer::default);
+        self.rings.resize_with(sections, Rings::default);
         for (number, section) in (0..).zip(&mut self.sections) {
             (section.number, section.own) = (number, Own::default());
             section.runs.clear();

@@ -87,6 +87,7 @@ impl Sorted {
             law,
             motion,
             phase: Phase::Drift,
+            sums: Tally::default(),
         };
         let outcome = threads.install(|| course.advance(&mut stepping, steps));
         self.store(bodies);
@@ -100,6 +101,8 @@ struct Stepping<'a, N> {
     law: &'a N,
     motion: Motion,
     phase: Phase,
+    /// Of the last evaluation.
+    sums: Tally,
 }
 
 impl<N: NormalLaw> Stepper for Stepping<'_, N> {
@@ -116,13 +119,17 @@ impl<N: NormalLaw> Stepper for Stepping<'_, N> {
         tally
     }
 
-    fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally {
+    fn evaluate(&mut self, wall: &Wall, complete: bool) {
         self.sorted.wall.follow(wall);
-        if complete {
+        self.sums = if complete {
             self.sorted.forces::<N, true>(self.law)
         } else {
             self.sorted.forces::<N, false>(self.law)
-        }
+        };
+    }
+
+    fn sums(&mut self) -> Tally {
+        self.sums
     }
 
     fn finish(&mut self) -> Result<(), Runaway> {

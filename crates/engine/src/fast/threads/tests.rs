@@ -15,6 +15,31 @@ fn written(threads: &Threads, stretches: usize) -> Vec<usize> {
     items
 }
 
+/// The legs in the order in which they are done, beside so many stretches, all of which are done too.
+fn in_turn<L: Copy + Send + Sync, const CHAINS: usize>(
+    threads: &Threads,
+    legs: [&[L]; CHAINS],
+    stretch: &(dyn Fn(&L) -> usize + Sync),
+    stretches: usize,
+) -> Vec<L> {
+    let done = Mutex::new(Vec::new());
+    let chains = Chains {
+        legs,
+        stretch,
+        work: &|leg: &L| done.lock().expect("no panic").push(*leg),
+    };
+    let mut numbers = vec![0; stretches];
+    threads.each_beside(
+        &mut numbers,
+        (),
+        &|_| 0,
+        &|number, ()| *number += 1,
+        &chains,
+    );
+    assert_eq!(numbers, vec![1; stretches]);
+    done.into_inner().expect("no panic")
+}
+
 fn expected(stretches: usize) -> Vec<usize> {
     (0..3 * stretches).map(|item| item / 3).collect()
 }
@@ -62,11 +87,7 @@ fn work_within_work_and_by_two_at_once_is_done_too() {
                     let legs: Vec<usize> = (0..9).collect();
                     for _ in 0..50 {
                         assert_eq!(written(&threads, 9), expected(9));
-                        let done = Mutex::new(Vec::new());
-                        threads.in_turn([&legs], legs.len(), &|leg| *leg, &|leg| {
-                            done.lock().expect("no panic").push(*leg);
-                        });
-                        assert_eq!(done.into_inner().expect("no panic"), legs);
+                        assert_eq!(in_turn(&threads, [&legs], &|leg| *leg, 9), legs);
                     }
                 });
             });
@@ -101,14 +122,10 @@ fn legs_are_done_in_turn_whoever_comes() {
                 let chains = [(0, legs), (1, legs / 2)];
                 let chains = chains
                     .map(|(chain, legs)| -> Vec<_> { (0..legs).map(|leg| (chain, leg)).collect() });
-                let done = Mutex::new(Vec::new());
-                threads.install(|| {
+                let done = threads.install(|| {
                     let chains = chains.each_ref().map(Vec::as_slice);
-                    threads.in_turn(chains, 23, &|leg| stretch(leg.1), &|leg| {
-                        done.lock().expect("no panic").push(*leg);
-                    });
+                    in_turn(&threads, chains, &|leg| stretch(leg.1), 23)
                 });
-                let done = done.into_inner().expect("no panic");
                 for (number, chain) in chains.iter().enumerate() {
                     let of_chain = done.iter().copied().filter(|leg| leg.0 == number);
                     assert_eq!(of_chain.collect::<Vec<_>>(), *chain);
