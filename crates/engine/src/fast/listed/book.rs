@@ -1,8 +1,9 @@
 //! What is added up over contacts and over the spheres of a wall, at once or later.
 //!
 //! Sums have one order, whichever threads worked out their terms. One section adds them up as it goes. Of several, each
-//! writes down the terms of its own rows of the list, or rings, and then they are added in the order of the list: by the
-//! thread that wrote them, which hands the sums on, so that few terms go from core to core.
+//! writes down the terms of its contacts and rings, and those of its own rows are added in the order of the list while the
+//! spheres move for the next step: by the thread that wrote them, which hands the sums on, so that few terms go from core to
+//! core.
 
 use core::ops::Range;
 use std::sync::{Mutex, PoisonError};

@@ -335,8 +335,7 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         } = &mut *self.scratch;
         let instructions = *instructions;
         let (sections, terms) = shares.with_terms();
-        let owed = self.owed.take();
-        let adding = owed.map(|complete| Adding::new(instructions, terms, complete));
+        let adding = (self.owed.take()).map(|all| Adding::new(instructions, terms, all));
         let chains = Chains {
             legs: adding.as_ref().map_or([&[], &[]], Adding::chains),
             stretch: &|leg: &Leg| leg.section,

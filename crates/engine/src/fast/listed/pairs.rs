@@ -58,20 +58,20 @@ impl Flat {
     fn find<M: Machine>(&self, position: &[Record], length: f64, skin: f64, found: &mut Found) {
         let Found {
             pairs,
-            number: end,
+            number,
             eights,
         } = found;
         let room = self.first.len() + LANES;
         if pairs.len() < room {
             pairs.resize(room, 0);
+            eights.resize(room / LANES, (0, 0));
         }
-        *end = 0;
-        eights.clear();
+        let mut end = 0;
         let (skin, whole) = (Lanes::splat(skin), Lanes::splat(length));
         let seconds = self.second.as_chunks::<LANES>().0;
         let blocks = self.first.as_chunks::<LANES>().0.iter();
         let blocks = blocks.zip(seconds).zip(self.reach.as_chunks::<LANES>().0);
-        for (block, ((first, second), reach)) in blocks.enumerate() {
+        for (block, (((first, second), reach), eight)) in blocks.zip(&mut *eights).enumerate() {
             if let Some(ahead) = seconds.get(block + AHEAD) {
                 bring_near(position, ahead);
             }
@@ -88,12 +88,13 @@ impl Flat {
             let reach = Lanes::load(reach, 0) + skin;
             // Coincident centres have no normal.
             let near = squared.less(reach * reach) & Lanes::splat(0.0).less(squared);
-            let window = pairs[*end..].first_chunk_mut().expect("room for a block");
+            let window = pairs[end..].first_chunk_mut().expect("room for a block");
             near.write_down((block * LANES) as u32, window);
-            eights.push((*end as u32, near.to_bits()));
-            *end += near.count() as usize;
+            *eight = (end as u32, near.to_bits());
+            end += near.count() as usize;
         }
-        eights.push((*end as u32, 0));
+        eights[seconds.len()] = (end as u32, 0);
+        *number = end;
     }
 }
 
@@ -103,7 +104,8 @@ struct Found {
     /// Their places in it; behind them are others.
     pairs: Vec<u32>,
     number: usize,
-    /// Of each eight pairs how many were found before them, and which of them were, a bit for each. One more stands behind.
+    /// Of each eight pairs how many were found before them, and which of them were, a bit for each. One more stands behind,
+    /// and then others.
     eights: Vec<(u32, u8)>,
 }
 
