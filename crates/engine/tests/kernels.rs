@@ -20,9 +20,9 @@ const LISTED: Apart = Apart {
 };
 
 /// The kernel that sorts takes inverse roots by iteration; where grains lie deep in one another, the forces of contacts are
-/// many times their sum.
+/// many times their sum. A velocity may come from these forces alone.
 const SORTED: Apart = Apart {
-    velocities: 1e-12,
+    velocities: 5e-11,
     forces: 5e-11,
     tally: 1e-9,
     ledger: 1e-10,
