@@ -135,8 +135,8 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         self.mean_wall_force = MeanForce::of(elastic, &shares.rings, tally);
     }
 
-    /// The same by several threads: for each section its contacts and then the forces of its wall. Terms of most sums are
-    /// still to be added.
+    /// The same by several threads: for each section its contacts and then the forces of its wall. The terms of most sums are
+    /// owed, still to be added.
     pub(super) fn share_forces(&mut self, wall: &Wall, complete: bool, tally: &mut Tally) {
         let Scratch {
             instructions,
@@ -179,6 +179,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         if let Some(elastic) = elastic {
             self.mean_wall_force = MeanForce::of(elastic, rings, tally);
         }
+        self.owed = Some(complete);
     }
 
     /// Adds up what is still owed, if any, here and now.

@@ -480,10 +480,7 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         let mut tally = Tally::default();
         match self.scratch.threads.several() {
             false => self.add_forces(wall, complete, &mut tally),
-            true => {
-                self.share_forces(wall, complete, &mut tally);
-                self.owed = Some(complete);
-            }
+            true => self.share_forces(wall, complete, &mut tally),
         }
         self.sums = tally;
     }

@@ -158,8 +158,9 @@ pub(super) struct Pairs {
     chosen: Found,
     /// Which of the near pairs touch.
     touching: Found,
-    /// The pairs of each run of the section's rows: in the list, and those near.
-    runs: [Vec<Range<usize>>; 2],
+    /// The pairs of each run of the section's rows: in the list, and of those near.
+    listed_runs: Vec<Range<usize>>,
+    near_runs: Vec<Range<usize>>,
     /// What contacts remember.
     pub(super) memory: Memory,
     /// Since the last evaluation; it adds up their energies.
@@ -180,7 +181,7 @@ impl Pairs {
     ) {
         self.list.clear();
         self.at.clear();
-        self.runs[0].clear();
+        self.listed_runs.clear();
         let mut borders = borders.iter().peekable();
         for run in runs {
             // The wall's spheres may have no rows.
@@ -197,7 +198,7 @@ impl Pairs {
                     .extend(first, list.partners(row as usize), spheres);
                 self.at.extend(list.range(row as usize).map(|at| at as u32));
             }
-            self.runs[0].push(begin..self.at.len());
+            self.listed_runs.push(begin..self.at.len());
         }
         borders.for_each(|border| self.take_border(border, spheres));
         self.list.fill_up();
@@ -289,7 +290,7 @@ impl Pairs {
 
     /// Which of the contacts are of each run of rows.
     pub(super) fn contacts_of_runs(&self) -> impl Iterator<Item = Range<usize>> {
-        self.runs[1].iter().map(|near| self.touching.of(near))
+        self.near_runs.iter().map(|near| self.touching.of(near))
     }
 
     /// The near pairs of the contacts from `start` on; of the last eight, those to spare are the last once more.
@@ -355,7 +356,8 @@ impl Work for Prune<'_> {
             list,
             near,
             chosen,
-            runs: [listed, of_near],
+            listed_runs,
+            near_runs,
             memory,
             ..
         } = self.pairs;
@@ -366,8 +368,8 @@ impl Work for Prune<'_> {
         near.second.extend(pairs.clone().map(|k| list.second[k]));
         near.reach.extend(pairs.map(|k| list.reach[k]));
         near.fill_up();
-        of_near.clear();
-        of_near.extend(listed.iter().map(|run| chosen.of(run)));
+        near_runs.clear();
+        near_runs.extend(listed_runs.iter().map(|run| chosen.of(run)));
         // No more of them can touch, so that warm steps take no memory.
         memory.reserve(near.first.capacity());
     }
