@@ -15,7 +15,23 @@ pub(super) const MOST_EIGHTS: usize = MOST / LANES;
 pub(super) const MOST_RINGS: usize = MOST_EIGHTS;
 
 /// A number for each candidate; the numbers behind them are arbitrary.
-pub(super) type Column = [f64; MOST];
+///
+/// Columns of 4096 bytes would all fall on the same lines of a processor's first cache, which then holds too few of them.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Column([f64; MOST + LANES]);
+
+impl Column {
+    #[inline(always)]
+    pub(super) fn load<M: Machine>(&self, at: usize) -> Lanes<M> {
+        Lanes::load(&self.0, at)
+    }
+
+    #[inline(always)]
+    pub(super) fn store<M: Machine>(&mut self, at: usize, of: Lanes<M>) {
+        of.store(&mut self.0, at);
+    }
+}
 
 /// A vector for each candidate, by component.
 #[derive(Debug)]
@@ -25,15 +41,15 @@ impl Vectors {
     #[inline(always)]
     pub(super) fn load<M: Machine>(&self, at: usize) -> LaneVector<M> {
         let Self([x, y, z]) = self;
-        LaneVector::new(Lanes::load(x, at), Lanes::load(y, at), Lanes::load(z, at))
+        LaneVector::new(x.load(at), y.load(at), z.load(at))
     }
 
     #[inline(always)]
     pub(super) fn store<M: Machine>(&mut self, at: usize, of: LaneVector<M>) {
         let Self([x, y, z]) = self;
-        of.x.store(x, at);
-        of.y.store(y, at);
-        of.z.store(z, at);
+        x.store(at, of.x);
+        y.store(at, of.y);
+        z.store(at, of.z);
     }
 }
 
@@ -67,7 +83,7 @@ pub(super) struct Candidates {
 
 impl Default for Candidates {
     fn default() -> Self {
-        let none = [0.0; MOST];
+        let none = Column([0.0; MOST + LANES]);
         Self {
             number: 0,
             places: [0; MOST + LANES],

@@ -10,21 +10,27 @@ use crate::fast::machine::Machine;
 /// Squared distance \[d^2\] below which two centres count as one, and have no normal.
 const COINCIDENT: f64 = 1e-30;
 
-/// Eights of pairs: first their squared distances, then how far they overlap and the inverse of the distance.
+/// Eights of pairs.
 #[derive(Debug, Default)]
 pub(super) struct Distances {
-    overlap: Vec<f64>,
-    inverse: Vec<f64>,
+    eights: Vec<Eight>,
     number: usize,
+}
+
+/// Eight pairs: first their squared distances, then how far they overlap and the inverse of the distance.
+#[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
+struct Eight {
+    overlap: [f64; LANES],
+    inverse: [f64; LANES],
 }
 
 impl Distances {
     /// Begins anew, with room for so many eights.
     pub(super) fn clear(&mut self, room: usize) {
         self.number = 0;
-        if self.overlap.len() < LANES * room {
-            self.overlap.resize(LANES * room, 0.0);
-            self.inverse.resize(LANES * room, 0.0);
+        if self.eights.len() < room {
+            self.eights.resize(room, Eight::default());
         }
     }
 
@@ -36,7 +42,8 @@ impl Distances {
     /// Writes down squared distances, `ahead` eights behind those that are kept.
     #[inline(always)]
     pub(super) fn note<M: Machine>(&mut self, ahead: usize, squared: Lanes<M>) {
-        squared.store(&mut self.overlap, LANES * (self.number + ahead));
+        let eight = &mut self.eights[self.number + ahead];
+        squared.store(&mut eight.overlap, 0);
     }
 
     /// Keeps so many more of the eights that were written down.
@@ -52,13 +59,13 @@ impl Distances {
         let (reach, zero) = (Lanes::<M>::splat(reach), Lanes::splat(0.0));
         let reach_squared = reach * reach;
         let mut touch = 0;
-        for at in (0..LANES * self.number).step_by(LANES) {
-            let squared = Lanes::load(&self.overlap, at);
+        for eight in &mut self.eights[..self.number] {
+            let squared = Lanes::from_array(&eight.overlap);
             let touches = squared.less(reach_squared) & Lanes::splat(COINCIDENT).less(squared);
             let inverse = squared.reciprocal_sqrt();
             let overlap = Lanes::select(touches, reach - squared * inverse, zero);
-            overlap.store(&mut self.overlap, at);
-            Lanes::select(touches, inverse, zero).store(&mut self.inverse, at);
+            overlap.store(&mut eight.overlap, 0);
+            Lanes::select(touches, inverse, zero).store(&mut eight.inverse, 0);
             if COUNT {
                 touch += touches.count();
             }
@@ -69,10 +76,7 @@ impl Distances {
     /// Overlaps and inverse distances of an eight.
     #[inline(always)]
     pub(super) fn get<M: Machine>(&self, eight: usize) -> (Lanes<M>, Lanes<M>) {
-        let at = LANES * eight;
-        (
-            Lanes::load(&self.overlap, at),
-            Lanes::load(&self.inverse, at),
-        )
+        let Eight { overlap, inverse } = &self.eights[eight];
+        (Lanes::from_array(overlap), Lanes::from_array(inverse))
     }
 }

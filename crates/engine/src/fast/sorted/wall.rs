@@ -209,11 +209,11 @@ impl WallTable {
             let turned_y = (velocity.y * cos - velocity.x * sin) * side;
             let turned = LaneVector::new(turned_x, turned_y, velocity.z);
             candidates.velocity.store(at, turned);
-            radius.store(&mut candidates.radius, at);
-            ring_velocity.store(&mut candidates.ring_velocity, at);
-            cos.store(&mut candidates.cos, at);
-            sin.store(&mut candidates.sin, at);
-            side.store(&mut candidates.side, at);
+            candidates.radius.store(at, radius);
+            candidates.ring_velocity.store(at, ring_velocity);
+            candidates.cos.store(at, cos);
+            candidates.sin.store(at, sin);
+            candidates.side.store(at, side);
         }
     }
 
@@ -230,7 +230,7 @@ impl WallTable {
         let reach_squared = reach * reach;
         for (at, holds) in candidates.eights::<M>() {
             let LaneVector { x: u, y: v, z: dz } = candidates.position.load::<M>(at);
-            let radius = Lanes::load(&candidates.radius, at);
+            let radius = candidates.radius.load::<M>(at);
             // The angle is approximate: a lane that turned to the second nearest sphere touches in a slightly different
             // order, so that it may touch another sphere behind one that it does not touch.
             let patience = usize::from((u * Lanes::splat(self.half_step)).less(v).any());
@@ -275,8 +275,8 @@ impl WallTable {
         for (at, _) in candidates.eights::<M>() {
             let LaneVector { x: u, y: v, z: dz } = candidates.position.load::<M>(at);
             let velocity = candidates.velocity.load::<M>(at);
-            let radius = Lanes::load(&candidates.radius, at);
-            let ring_velocity = Lanes::load(&candidates.ring_velocity, at);
+            let radius = candidates.radius.load::<M>(at);
+            let ring_velocity = candidates.ring_velocity.load::<M>(at);
             // With V = dR/dt, (v - V) . s is as linear in cos and sin as s^2.
             let along = u * velocity.x + v * velocity.y + dz * velocity.z + ring_velocity * radius;
             let along_u = radius * velocity.x + ring_velocity * u;
@@ -306,9 +306,9 @@ impl WallTable {
             if FULL {
                 sums.wall_axial_force += on_z;
             }
-            let cos = Lanes::load(&candidates.cos, at);
-            let sin = Lanes::load(&candidates.sin, at);
-            let on_v = on_v * Lanes::load(&candidates.side, at);
+            let cos = candidates.cos.load::<M>(at);
+            let sin = candidates.sin.load::<M>(at);
+            let on_v = on_v * candidates.side.load::<M>(at);
             let on_grains = LaneVector::new(on_u * cos - on_v * sin, on_u * sin + on_v * cos, on_z);
             candidates.add_forces(at, on_grains, force);
         }
