@@ -1,28 +1,31 @@
-//! Distances of the pairs that may touch, eight at a time.
-//!
-//! The roots of many pairs are taken one after another: each waits for long, none for another.
+//! Squared distances of the pairs that may touch, eight at a time.
 
 use peristalsis_physics::real::Real;
 
-use crate::fast::lanes::{LANES, Lanes};
+use crate::fast::lanes::{LANES, Lanes, Mask};
 use crate::fast::machine::Machine;
 
 /// Squared distance \[d^2\] below which two centres count as one, and have no normal.
 const COINCIDENT: f64 = 1e-30;
 
-/// Eights of pairs.
+/// Squared distances \[d^2\].
 #[derive(Debug, Default)]
 pub(super) struct Distances {
     eights: Vec<Eight>,
     number: usize,
 }
 
-/// Eight pairs: first their squared distances, then how far they overlap and the inverse of the distance.
+/// Eight numbers on a line of the cache.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
-struct Eight {
-    overlap: [f64; LANES],
-    inverse: [f64; LANES],
+struct Eight([f64; LANES]);
+
+/// Eight pairs, some of which touch.
+pub(super) struct Near<M: Machine> {
+    pub(super) touch: Mask<M>,
+    /// Zero for those that do not touch, as is the next.
+    pub(super) overlap: Lanes<M>,
+    pub(super) inverse_distance: Lanes<M>,
 }
 
 impl Distances {
@@ -42,8 +45,8 @@ impl Distances {
     /// Writes down squared distances, `ahead` eights behind those that are kept.
     #[inline(always)]
     pub(super) fn note<M: Machine>(&mut self, ahead: usize, squared: Lanes<M>) {
-        let eight = &mut self.eights[self.number + ahead];
-        squared.store(&mut eight.overlap, 0);
+        let Eight(numbers) = &mut self.eights[self.number + ahead];
+        squared.store(numbers, 0);
     }
 
     /// Keeps so many more of the eights that were written down.
@@ -52,31 +55,17 @@ impl Distances {
         self.number += more;
     }
 
-    /// From the squared distances to the overlaps and inverse distances of those that are nearer than `reach`, and zeros
-    /// for the others; how many touch.
+    /// An eight; those pairs touch that are nearer than `reach`.
     #[inline(always)]
-    pub(super) fn take_roots<M: Machine, const COUNT: bool>(&mut self, reach: f64) -> u64 {
-        let (reach, zero) = (Lanes::<M>::splat(reach), Lanes::splat(0.0));
-        let reach_squared = reach * reach;
-        let mut touch = 0;
-        for eight in &mut self.eights[..self.number] {
-            let squared = Lanes::from_array(&eight.overlap);
-            let touches = squared.less(reach_squared) & Lanes::splat(COINCIDENT).less(squared);
-            let inverse = squared.reciprocal_sqrt();
-            let overlap = Lanes::select(touches, reach - squared * inverse, zero);
-            overlap.store(&mut eight.overlap, 0);
-            Lanes::select(touches, inverse, zero).store(&mut eight.inverse, 0);
-            if COUNT {
-                touch += touches.count();
-            }
+    pub(super) fn near<M: Machine>(&self, eight: usize, reach: f64) -> Near<M> {
+        let squared = Lanes::from_array(&self.eights[eight].0);
+        let (reach, zero) = (Lanes::splat(reach), Lanes::splat(0.0));
+        let touch = squared.less(reach * reach) & Lanes::splat(COINCIDENT).less(squared);
+        let inverse_distance = squared.reciprocal_sqrt();
+        Near {
+            touch,
+            overlap: Lanes::select(touch, reach - squared * inverse_distance, zero),
+            inverse_distance: Lanes::select(touch, inverse_distance, zero),
         }
-        touch
-    }
-
-    /// Overlaps and inverse distances of an eight.
-    #[inline(always)]
-    pub(super) fn get<M: Machine>(&self, eight: usize) -> (Lanes<M>, Lanes<M>) {
-        let Eight { overlap, inverse } = &self.eights[eight];
-        (Lanes::from_array(overlap), Lanes::from_array(inverse))
     }
 }

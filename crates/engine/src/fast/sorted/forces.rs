@@ -152,7 +152,6 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
             block(place).find_touching(self.pairs.reach, position, tile, touching);
             *end = touching.distances.number();
         }
-        sums.grain_contacts += touching.distances.take_roots::<M, FULL>(self.pairs.reach);
         let mut begin = 0;
         for (place, end) in blocks().zip(ends) {
             block(place).add_pairs::<N, FULL>(
@@ -181,7 +180,7 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
             wall.add_up_forces::<M, N, FULL>(
                 law,
                 candidates,
-                &mut touching.distances,
+                &touching.distances,
                 &mut force,
                 &mut sums,
             );

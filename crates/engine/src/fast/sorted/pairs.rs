@@ -98,7 +98,11 @@ impl<M: Machine> Block<M> {
         for eight in those {
             let partners = touching.partners[eight];
             let start = partners.start as usize;
-            let (overlap, inverse) = touching.distances.get::<M>(eight);
+            let near = touching.distances.near::<M>(eight, constants.reach);
+            let (overlap, inverse) = (near.overlap, near.inverse_distance);
+            if FULL {
+                sums.grain_contacts += near.touch.count();
+            }
             let separation = self.position - position.load(start);
             let away = self.velocity - velocity.load(start);
             let normal_velocity = away.dot(separation) * inverse;

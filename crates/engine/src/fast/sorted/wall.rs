@@ -265,11 +265,10 @@ impl WallTable {
         &self,
         law: &N,
         candidates: &Candidates,
-        distances: &mut Distances,
+        distances: &Distances,
         force: &mut ColumnsMut<'_>,
         sums: &mut Sums<M>,
     ) {
-        sums.wall_contacts += distances.take_roots::<M, FULL>(self.reach);
         let zero = Lanes::<M>::splat(0.0);
         let mut eight = 0;
         for (at, _) in candidates.eights::<M>() {
@@ -285,7 +284,11 @@ impl WallTable {
             let (mut pushes, mut by_cos, mut by_sin) = (zero, zero, zero);
             for &(cos, sin) in &self.outward[..candidates.visits[at / LANES]] {
                 let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));
-                let (overlap, inverse) = distances.get(eight);
+                let near = distances.near(eight, self.reach);
+                let (overlap, inverse) = (near.overlap, near.inverse_distance);
+                if FULL {
+                    sums.wall_contacts += near.touch.count();
+                }
                 eight += 1;
                 let parting = along - (along_u * cos + along_v * sin);
                 let normal_velocity = parting * inverse;
