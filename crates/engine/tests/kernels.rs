@@ -20,7 +20,7 @@ const LISTED: Apart = Apart {
 };
 
 /// The kernel that sorts takes inverse roots by iteration; where grains lie deep in one another, the forces of contacts are
-/// many times their sum. Velocities are as far apart as these forces make them, see [`kick`].
+/// many times their sum. Velocities are no farther apart than these forces make them, see [`kick`].
 const SORTED: Apart = Apart {
     forces: 5e-11,
     tally: 1e-9,
@@ -80,14 +80,15 @@ fn step_from(state: &State, prepared: &Simulation) -> Option<Simulation> {
     let outcome = reference.advance(1);
     assert_eq!(outcome, fast.advance(1));
     outcome.ok()?;
+    let apart = Apart::between(&reference, &fast);
     let most = match fast.snapshot().sorting {
         Some(_) => Apart {
-            velocities: LISTED.velocities + SORTED.forces * kick(&reference, state),
+            velocities: LISTED.velocities + apart.forces * kick(&reference, state),
             ..SORTED
         },
         None => LISTED,
     };
-    Apart::between(&reference, &fast).assert_within(&most);
+    apart.assert_within(&most);
     Some(reference)
 }
 

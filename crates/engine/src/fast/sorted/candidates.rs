@@ -63,7 +63,7 @@ pub(super) struct Candidates {
     /// Place of the grain in its tile.
     places: [u32; MOST + LANES],
     /// How many rings within its reach come before this one.
-    before: [f64; MOST + LANES],
+    before: Column,
     /// Place of the grain relative to the nearest sphere of the ring: along the radius to this sphere, along the ring, and
     /// along the tube from there.
     pub(super) position: Vectors,
@@ -87,7 +87,7 @@ impl Default for Candidates {
         Self {
             number: 0,
             places: [0; MOST + LANES],
-            before: [0.0; MOST + LANES],
+            before: none,
             position: Vectors([none; 3]),
             velocity: Vectors([none; 3]),
             radius: none,
@@ -116,7 +116,7 @@ impl Candidates {
     pub(super) fn add<M: Machine>(&mut self, block: usize, meet: Mask<M>, before: f64) {
         let to = self.places[self.number..].first_chunk_mut();
         meet.write_down(block as u32, to.expect("room for eight more"));
-        Lanes::<M>::splat(before).store(&mut self.before, self.number);
+        self.before.store(self.number, Lanes::<M>::splat(before));
         self.number += meet.count() as usize;
     }
 
@@ -138,7 +138,7 @@ impl Candidates {
     #[inline(always)]
     pub(super) fn pairs<M: Machine>(&self, at: usize) -> (&[u32; LANES], Lanes<M>) {
         let places = self.places[at..].first_chunk().expect("eight candidates");
-        (places, Lanes::load(&self.before, at))
+        (places, self.before.load(at))
     }
 
     /// Adds the forces on the grains of eight candidates to the forces on all grains of the tile.

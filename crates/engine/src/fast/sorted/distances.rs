@@ -25,7 +25,8 @@ pub(super) struct Near<M: Machine> {
     pub(super) touch: Mask<M>,
     /// Zero for those that do not touch, as is the next.
     pub(super) overlap: Lanes<M>,
-    pub(super) inverse_distance: Lanes<M>,
+    /// 1/distance
+    pub(super) inverse: Lanes<M>,
 }
 
 impl Distances {
@@ -61,11 +62,11 @@ impl Distances {
         let squared = Lanes::from_array(&self.eights[eight].0);
         let (reach, zero) = (Lanes::splat(reach), Lanes::splat(0.0));
         let touch = squared.less(reach * reach) & Lanes::splat(COINCIDENT).less(squared);
-        let inverse_distance = squared.reciprocal_sqrt();
+        let inverse = squared.reciprocal_sqrt();
         Near {
             touch,
-            overlap: Lanes::select(touch, reach - squared * inverse_distance, zero),
-            inverse_distance: Lanes::select(touch, inverse_distance, zero),
+            overlap: Lanes::select(touch, reach - squared * inverse, zero),
+            inverse: Lanes::select(touch, inverse, zero),
         }
     }
 }

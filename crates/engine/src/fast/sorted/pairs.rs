@@ -5,7 +5,7 @@ use core::ops::Range;
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::real::{Real, Vector};
 
-use super::distances::Distances;
+use super::distances::{Distances, Near};
 use super::rows::NOWHERE;
 use super::tile::{Partners, Tile};
 use crate::fast::columns::{ColumnsMut, ColumnsRef};
@@ -98,10 +98,13 @@ impl<M: Machine> Block<M> {
         for eight in those {
             let partners = touching.partners[eight];
             let start = partners.start as usize;
-            let near = touching.distances.near::<M>(eight, constants.reach);
-            let (overlap, inverse) = (near.overlap, near.inverse_distance);
+            let Near {
+                touch,
+                overlap,
+                inverse,
+            } = touching.distances.near::<M>(eight, constants.reach);
             if FULL {
-                sums.grain_contacts += near.touch.count();
+                sums.grain_contacts += touch.count();
             }
             let separation = self.position - position.load(start);
             let away = self.velocity - velocity.load(start);

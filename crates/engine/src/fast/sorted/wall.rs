@@ -13,7 +13,7 @@ use peristalsis_physics::wall::Lattice;
 use peristalsis_physics::wall::lattice::approximate_angle;
 
 use super::candidates::{Candidates, MOST_EIGHTS};
-use super::distances::Distances;
+use super::distances::{Distances, Near};
 use super::pairs::Block;
 use crate::fast::columns::{ColumnsMut, ColumnsRef};
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
@@ -284,10 +284,13 @@ impl WallTable {
             let (mut pushes, mut by_cos, mut by_sin) = (zero, zero, zero);
             for &(cos, sin) in &self.outward[..candidates.visits[at / LANES]] {
                 let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));
-                let near = distances.near(eight, self.reach);
-                let (overlap, inverse) = (near.overlap, near.inverse_distance);
+                let Near {
+                    touch,
+                    overlap,
+                    inverse,
+                } = distances.near(eight, self.reach);
                 if FULL {
-                    sums.wall_contacts += near.touch.count();
+                    sums.wall_contacts += touch.count();
                 }
                 eight += 1;
                 let parting = along - (along_u * cos + along_v * sin);
