@@ -45,9 +45,13 @@ impl Ring {
         self.turns.resize(room, 0.0);
     }
 
+    /// Takes up the first so many spheres. The lanes behind them may hold others, whose numbers nobody reads.
     #[inline(always)]
-    fn take_up<M: Machine>(&mut self, position: &[Record], velocity: &[Record]) {
-        let spheres = position.len();
+    fn take_up<M: Machine>(
+        &mut self,
+        (position, velocity): (&[Record], &[Record]),
+        spheres: usize,
+    ) {
         let room = room_for(spheres);
         let mut places = self.place.first_mut(room);
         let mut velocities = self.velocity.first_mut(room);
@@ -66,27 +70,25 @@ impl Ring {
 /// The first eight records, with zeros where there are fewer.
 #[inline(always)]
 fn eight_from<M: Machine>(records: &[Record]) -> [Quad<M>; LANES] {
-    let mut eight = [Quad::<M>::splat(0.0); LANES];
-    match records.first_chunk::<LANES>() {
-        Some(whole) => {
-            for lane in 0..LANES {
-                eight[lane] = whole[lane].quad();
-            }
-        }
+    let mut few = [Record::ZERO; LANES];
+    // Read where they stand: copies, written and read with other widths, wait for each other.
+    let records = match records.first_chunk() {
+        Some(eight) => eight,
         None => {
-            for (quad, record) in eight.iter_mut().zip(records) {
-                *quad = record.quad();
-            }
+            few[..records.len()].copy_from_slice(records);
+            &few
         }
+    };
+    let mut eight = [Quad::<M>::splat(0.0); LANES];
+    for lane in 0..LANES {
+        eight[lane] = records[lane].quad();
     }
     eight
 }
 
-/// Room for the rings at hand.
+/// Room for the forces on a ring.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
-    here: Ring,
-    above: Ring,
     /// Forces of the bonds: along the ring, and to the two spheres above.
     along: Columns,
     first: Columns,
@@ -106,9 +108,6 @@ fn room_for(spheres: usize) -> usize {
 impl Rows {
     fn resize(&mut self, wall: &ElasticWall) {
         let spheres = wall.lattice().spheres_per_ring as usize;
-        for ring in [&mut self.here, &mut self.above] {
-            ring.clear(room_for(spheres));
-        }
         for row in [
             &mut self.along,
             &mut self.first,
@@ -134,6 +133,8 @@ impl Rows {
 /// Room for the rings of a section, and what their forces and velocities come to.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rings {
+    /// The ring at hand, and the one above it, in turn.
+    at_hand: [Ring; 2],
     rows: Rows,
     /// Sums of the forces on the spheres of each ring, and of their velocities.
     pub(super) of_rings: Vec<[Record; 2]>,
@@ -194,45 +195,53 @@ impl WallForces<'_> {
     #[inline(always)]
     fn add<M: Machine, B: Book<M>, const ALL: bool>(&mut self, book: &mut B) {
         let wall = self.wall;
-        let Rings { rows, of_rings, .. } = &mut *self.rings;
+        let Rings {
+            at_hand: [here, above],
+            rows,
+            of_rings,
+            ..
+        } = &mut *self.rings;
         let Moving {
             position, velocity, ..
         } = self.spheres;
         let lattice = wall.lattice();
         let (per_ring, all) = (lattice.spheres_per_ring as usize, lattice.rings() as usize);
         if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.force.x.is_empty() {
+            here.clear(room_for(per_ring));
+            above.clear(room_for(per_ring));
             rows.resize(wall);
         }
-        // The spheres of a ring are in one section.
-        let range = |ring: usize| {
-            let first = self.places[ring * per_ring] as usize;
-            first..first + per_ring
-        };
+        let (mut here, mut above) = (here, above);
+        // The spheres of a ring are in one section, one after the other.
+        let start = |ring: usize| self.places[ring * per_ring] as usize;
+        let from = |ring: usize| (&position[start(ring)..], &velocity[start(ring)..]);
         of_rings.clear();
-        let first = (0..all).find(|&ring| range(ring).start == self.first);
+        let first = (0..all).find(|&ring| start(ring) == self.first);
         let Some(first) = first else {
             return;
         };
 
         // Forces of the bonds of the ring below on the first.
-        let below = range((first + all - 1) % all);
-        rows.here
-            .take_up::<M>(&position[below.clone()], &velocity[below]);
-        rows.above
-            .take_up::<M>(&position[range(first)], &velocity[range(first)]);
-        bonds::<M, _, ALL>(wall, rows, (first + 1) % 2, &mut Sums::<M>::default());
+        here.take_up::<M>(from((first + all - 1) % all), per_ring);
+        above.take_up::<M>(from(first), per_ring);
+        bonds::<M, _, ALL>(
+            wall,
+            [here, above],
+            rows,
+            (first + 1) % 2,
+            &mut Sums::<M>::default(),
+        );
         let rings = self.force.chunks_exact_mut(per_ring);
         for (ring, forces) in (first..).zip(rings) {
-            core::mem::swap(&mut rows.here, &mut rows.above);
-            let above = range((ring + 1) % all);
-            rows.above
-                .take_up::<M>(&position[above.clone()], &velocity[above]);
+            core::mem::swap(&mut here, &mut above);
+            above.take_up::<M>(from((ring + 1) % all), per_ring);
             carry::<M>(rows, ring % 2, per_ring);
-            bonds::<M, _, ALL>(wall, rows, ring % 2, book);
-            tethers_and_drive::<M, _, ALL>(wall, rows, ring, book);
+            bonds::<M, _, ALL>(wall, [here, above], rows, ring % 2, book);
+            tethers_and_drive::<M, _, ALL>(wall, here, rows, ring, book);
             let mut sums = [Quad::<M>::splat(0.0); 2];
             let (blocks, rest) = forces.as_chunks_mut::<LANES>();
-            let (velocities, rest_velocities) = velocity[range(ring)].as_chunks::<LANES>();
+            let (velocities, rest_velocities) =
+                velocity[start(ring)..][..per_ring].as_chunks::<LANES>();
             let of_rest = blocks.len() * LANES;
             for (block, (forces, velocities)) in blocks.iter_mut().zip(velocities).enumerate() {
                 add_eight::<M>(&rows.force, block * LANES, forces, velocities, &mut sums);
@@ -321,6 +330,7 @@ impl<M: Machine> Bond<M> {
 #[inline(always)]
 fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
     wall: &ElasticWall,
+    [here, above]: [&Ring; 2],
     rows: &mut Rows,
     parity: usize,
     book: &mut B,
@@ -336,9 +346,9 @@ fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
         length: parameters.lattice.length(),
     };
     let room = room_for(per_ring);
-    let (place, velocity) = (rows.here.place.first(room), rows.here.velocity.first(room));
-    let place_above = rows.above.place.first(room);
-    let velocity_above = rows.above.velocity.first(room);
+    let (place, velocity) = (here.place.first(room), here.velocity.first(room));
+    let place_above = above.place.first(room);
+    let velocity_above = above.velocity.first(room);
     let mut on_along = rows.along.first_mut(room);
     let mut on_first = rows.first.first_mut(room);
     let mut on_second = rows.second.first_mut(room);
@@ -372,6 +382,7 @@ fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
 #[inline(always)]
 fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
     wall: &ElasticWall,
+    here: &Ring,
     rows: &mut Rows,
     ring: usize,
     book: &mut B,
@@ -397,11 +408,11 @@ fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
     let reference_z = Lanes::splat(lattice.axial_position(ring as u32));
     let parity = ring % 2;
     let (room, in_lanes) = (room_for(per_ring), per_ring.next_multiple_of(LANES));
-    let (places, velocities) = (rows.here.place.first(room), rows.here.velocity.first(room));
+    let (places, velocities) = (here.place.first(room), here.velocity.first(room));
     let (along, carried) = (rows.along.first(room), rows.carried.first(room));
     let (first, second) = (rows.first.first(room), rows.second.first(room));
     let (cos, sin) = (&rows.cos[parity][..in_lanes], &rows.sin[parity][..in_lanes]);
-    let turns = &rows.here.turns[..in_lanes];
+    let turns = &here.turns[..in_lanes];
     let mut force = rows.force.first_mut(room);
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);
