@@ -65,9 +65,12 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
         }
         match self.tally.take() {
             Some(tally) => {
-                let mut sums = Sums::<M>::default();
-                self.work_out::<M>(&mut sums);
-                sums.add_to(tally);
+                let mut at_once = AtOnce::<M> {
+                    sums: Sums::default(),
+                    complete: self.complete,
+                };
+                self.work_out::<M>(&mut at_once);
+                at_once.sums.add_to(tally);
             }
             None => {
                 let mut terms = core::mem::take(&mut self.pairs.terms);
@@ -193,8 +196,13 @@ fn work_out<M: Machine, N: NormalLaw, T: PackedHistory>(
     }
 }
 
-/// All spheres are in one section: sums are added up at once.
-impl<M: Machine> Outcome<M> for Sums<M> {
+/// All spheres are in one section: sums are added up at once, those that only observers read where all are wanted.
+struct AtOnce<M: Machine> {
+    sums: Sums<M>,
+    complete: bool,
+}
+
+impl<M: Machine> Outcome<M> for AtOnce<M> {
     #[inline(always)]
     fn at(&self, places: &[u32; LANES]) -> [u32; LANES] {
         *places
@@ -202,20 +210,23 @@ impl<M: Machine> Outcome<M> for Sums<M> {
 
     #[inline(always)]
     fn add(&mut self, eight: &Eight<M>) {
+        let Self { sums, complete } = self;
         let (zero, valid) = (Lanes::splat(0.0), Mask::first(eight.contacts));
-        let with_wall = valid & eight.with_wall;
         let answer = &eight.answer;
         let overlap = Lanes::select(valid, eight.overlap, zero);
-        self.contact_energy += Lanes::select(valid, answer.energy, zero);
-        self.normal_dissipation += Lanes::select(valid, answer.normal_dissipation, zero);
-        self.tangential_lost += Lanes::select(valid, answer.tangential.damped, zero);
-        self.sliding_lost += Lanes::select(valid, answer.tangential.slid, zero);
-        self.total_overlap += overlap;
-        self.largest_overlap = self.largest_overlap.max(overlap);
-        self.wall_axial_force += Lanes::select(with_wall, answer.force.z, zero);
-        self.grain_contacts += eight.contacts as u64 - with_wall.count();
-        self.wall_contacts += with_wall.count();
-        self.sliding_contacts += (valid & answer.tangential.sliding).count();
+        sums.normal_dissipation += Lanes::select(valid, answer.normal_dissipation, zero);
+        sums.tangential_lost += Lanes::select(valid, answer.tangential.damped, zero);
+        sums.sliding_lost += Lanes::select(valid, answer.tangential.slid, zero);
+        sums.largest_overlap = sums.largest_overlap.max(overlap);
+        if *complete {
+            let with_wall = valid & eight.with_wall;
+            sums.contact_energy += Lanes::select(valid, answer.energy, zero);
+            sums.total_overlap += overlap;
+            sums.wall_axial_force += Lanes::select(with_wall, answer.force.z, zero);
+            sums.grain_contacts += eight.contacts as u64 - with_wall.count();
+            sums.wall_contacts += with_wall.count();
+            sums.sliding_contacts += (valid & answer.tangential.sliding).count();
+        }
     }
 }
 
@@ -245,15 +256,16 @@ impl<M: Machine> Outcome<M> for OfRows<'_, M> {
         );
         let losses = record::from_lanes(lost, answer.energy);
         write_down::<M>(&mut terms.losses[eight.start..], losses);
-        if self.complete {
-            let axial_force = Lanes::select(eight.with_wall, answer.force.z, zero);
-            let vector = LaneVector::new(eight.overlap, axial_force, zero);
-            let rest = record::from_lanes(vector, zero);
-            write_down::<M>(&mut terms.rest[eight.start..], rest);
-        }
         let valid = Mask::first(eight.contacts);
         let overlap = Lanes::select(valid, eight.overlap, zero);
         self.largest_overlap = self.largest_overlap.max(overlap);
+        if !self.complete {
+            return;
+        }
+        let axial_force = Lanes::select(eight.with_wall, answer.force.z, zero);
+        let vector = LaneVector::new(eight.overlap, axial_force, zero);
+        let rest = record::from_lanes(vector, zero);
+        write_down::<M>(&mut terms.rest[eight.start..], rest);
         let is_own = |row: u32| row < self.own.number as u32;
         // Mostly all are.
         let owned = match eight.rows.iter().fold(true, |all, &row| all & is_own(row)) {
