@@ -79,8 +79,8 @@ fn step_from(state: &State, prepared: &Simulation) -> Option<Simulation> {
     let overlap = reference.tally().largest_overlap;
     let most = match fast.snapshot().sorting {
         Some(_) if overlap > 0.0 => {
-            // All spheres that this kernel serves here have diameter 1. A distance is off by this over twice itself: so are
-            // the direction of a force, in units of the distance, and its size, in units of the overlap.
+            // All spheres that this kernel serves here have diameter 1. A distance s is off by CANCELLED/(2 s), and with it
+            // the direction of a force, by that over s, and its size, by that over the overlap.
             let nearest = 1.0 - overlap;
             let more = CANCELLED / nearest * (1.0 / nearest + 1.0 / overlap);
             Apart {

@@ -71,7 +71,7 @@ impl Ring {
 #[inline(always)]
 fn eight_from<M: Machine>(records: &[Record]) -> [Quad<M>; LANES] {
     let mut few = [Record::ZERO; LANES];
-    // Read where they stand: copies, written and read with other widths, wait for each other.
+    // Read in place: a copy would be written and read in registers of other widths, and the reading would wait.
     let records = match records.first_chunk() {
         Some(eight) => eight,
         None => {
