@@ -39,6 +39,7 @@ mod drawing;
 mod error;
 mod geometry;
 mod legend;
+mod notation;
 mod picture;
 mod quantity;
 mod snapshot;

@@ -1,10 +1,11 @@
 //! Grains in a part of the tube, seen from the side.
 
-use crate::axis::{decimal, extent};
+use crate::axis::extent;
 use crate::chart::{ChartFigure, ChartPanel, Line, Spheres, Tint};
 use crate::colour_scale::{ColourScale, Palette};
 use crate::drawing::Drawing;
 use crate::error::{FigureError, finite, positive};
+use crate::notation::decimal;
 use crate::style::Width;
 
 /// A sphere as the side view needs it, lengths in one unit.
