@@ -63,19 +63,21 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
 
     /// Makes the neighbour list anew where it no longer holds.
     pub(crate) fn refresh(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
-        let length = wall.length();
-        if self
-            .pairs
-            .outdated(&bodies.position, &bodies.turns, length, skin)
-        {
-            self.rebuild(bodies, wall, skin, &Threads::default());
+        if !self.are_listed(bodies, wall) {
+            self.rebuild(bodies, wall, [0.5 * skin; 2], &Threads::default());
         }
     }
 
-    /// Makes the neighbour list anew.
-    pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64, threads: &Threads) {
+    /// Makes the neighbour list anew; to the skin of a pair a grain and a sphere of the wall contribute `skins`.
+    pub(crate) fn rebuild(
+        &mut self,
+        bodies: &Bodies,
+        wall: &Wall,
+        skins: [f64; 2],
+        threads: &Threads,
+    ) {
         self.pairs.carry_out();
-        self.rebuild_fresh(bodies, wall, skin, threads);
+        self.rebuild_fresh(bodies, wall, skins, threads);
         self.pairs.carry_on();
     }
 
@@ -84,16 +86,16 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
         &mut self,
         bodies: &Bodies,
         wall: &Wall,
-        skin: f64,
+        skins: [f64; 2],
         threads: &Threads,
     ) {
         let grains = bodies.grains;
         let rule = PairRule {
             diameter: &bodies.diameter,
             length: wall.length(),
-            skin: skin + self.range,
+            skins: skins.map(|skin| skin + 0.5 * self.range),
             half_width: wall.usual_radius(),
-            admits_all_below: grains,
+            grains,
             admits: |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
         };
         self.pairs
@@ -105,27 +107,27 @@ impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
 const ROUNDING: f64 = 1e-9;
 
 impl<H> Contacts<H> {
-    /// Calls `visit` for each listed pair i < j of sphere i whose contact acts, and which `is_wanted`: j, the contact, and
-    /// its history.
+    /// Calls `visit` for each listed pair i < j of sphere i, from j = `first` on, whose contact acts: j, the contact, and its
+    /// history.
     pub(crate) fn for_each_acting<N: NormalLaw, T: TangentialLaw<History<f64> = H>>(
         &self,
         law: &ContactLaw<N, T>,
         bodies: &Bodies,
         length: f64,
         i: usize,
-        is_wanted: impl Fn(usize) -> bool,
+        first: usize,
         mut visit: impl FnMut(usize, &Contact, &H),
     ) where
         H: Copy + Default + PartialEq,
     {
         let here = bodies.sphere(i);
-        for (&j, history) in self.pairs.pairs_of(i) {
+        for (&j, history) in self.pairs.pairs_of(i, first) {
             let j = j as usize;
             let separation = periodic(here.position - bodies.position[j], length);
             let reach = 0.5 * (here.diameter + bodies.diameter[j]) + self.range;
             // Most are out of reach.
             let is_far = separation.length_squared() > (1.0 + ROUNDING) * (reach * reach);
-            if is_far || !is_wanted(j) {
+            if is_far {
                 continue;
             }
             let contact = here.contact(&bodies.sphere(j), separation);

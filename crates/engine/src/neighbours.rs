@@ -27,10 +27,12 @@ pub(crate) struct Neighbours<H> {
     history: Vec<H>,
     /// Unfolded positions for which the list was made.
     origin: Vec<DVec3>,
-    /// Skin with which it was made.
-    skin: f64,
-    /// The spheres whose pairs all are admitted, and the others: their cells, and what is found for them.
-    cells: [Cells; 2],
+    /// How many spheres are grains, and the skins with which it was made.
+    grains: usize,
+    skins: [f64; 2],
+    /// Grains and spheres of the wall in the cells where the partners of grains are; and those of the wall in cells of their
+    /// own. What is found for grains, and for the wall.
+    cells: [Cells; 3],
     found: [Vec<Piece>; 2],
     collecting: Collecting,
     /// Histories (i, j, history) on their way from one list to the next.
@@ -48,7 +50,8 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             next: Rows::default(),
             history: Vec::new(),
             origin: Vec::new(),
-            skin: 0.0,
+            grains: 0,
+            skins: [0.0; 2],
             cells: Default::default(),
             found: Default::default(),
             collecting: Collecting::default(),
@@ -100,16 +103,17 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         &mut self.history
     }
 
-    /// The partners of sphere i with larger numbers, each with its history.
-    pub(crate) fn pairs_of(&self, i: usize) -> impl Iterator<Item = (&u32, &H)> {
-        let histories = &self.history[self.rows.range(i)];
-        self.partners(i).iter().zip(histories)
+    /// The partners of sphere i with larger numbers, from `first` on, each with its history.
+    pub(crate) fn pairs_of(&self, i: usize, first: usize) -> impl Iterator<Item = (&u32, &H)> {
+        let (partners, histories) = (self.partners(i), &self.history[self.rows.range(i)]);
+        let before = partners.partition_point(|&j| (j as usize) < first);
+        partners[before..].iter().zip(&histories[before..])
     }
 
     /// All pairs with their histories, in order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
         (0..self.rows()).flat_map(move |i| {
-            let row = self.pairs_of(i);
+            let row = self.pairs_of(i, 0);
             row.map(move |(&j, history)| (i as u32, j, history))
         })
     }
@@ -128,38 +132,30 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         place.is_some()
     }
 
-    /// Whether two spheres may be closer, by more than `skin`, than at the places for which the list was made.
+    /// Whether the list holds all admitted pairs that are now closer than (d_i + d_j)/2 + `range`.
     ///
     /// The bound is on differences of displacement: spheres that drift along the tube together never outdate the list.
-    pub(crate) fn outdated(
-        &self,
-        position: &[DVec3],
-        turns: &[i32],
-        length: f64,
-        skin: f64,
-    ) -> bool {
-        let unfolded = position.iter().zip(turns);
-        let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * length));
-        self.origin.len() != position.len()
-            || Drift::between(unfolded.zip(&self.origin)).approach() > skin
+    pub(crate) fn holds(&self, position: &[DVec3], turns: &[i32], length: f64, range: f64) -> bool {
+        let by = |numbers: Range<usize>| {
+            let here = unfolded(&position[numbers.clone()], &turns[numbers.clone()], length);
+            self.drift(here.zip(numbers))
+        };
+        let grains = self.grains.min(position.len());
+        let drifts = [by(0..grains), by(grains..position.len())];
+        self.covers(position.len(), &drifts, [0.5 * range; 2])
     }
 
-    /// Whether the list holds all admitted pairs that are now closer than (d_i + d_j)/2 + `skin`.
-    pub(crate) fn holds(&self, position: &[DVec3], turns: &[i32], length: f64, skin: f64) -> bool {
-        !self.outdated(position, turns, length, self.skin - skin)
-    }
-
-    /// Whether the list holds all admitted pairs of so many spheres that are now closer than (d_i + d_j)/2 + `skin`;
-    /// `drift` is the drift of all spheres.
-    pub(crate) fn covers(&self, spheres: usize, drift: Drift, skin: f64) -> bool {
-        self.origin.len() == spheres && drift.approach() + skin <= self.skin
+    /// Whether the list holds all admitted pairs of so many spheres that are now within these skins; `drifts` are those of
+    /// all grains and all spheres of the wall.
+    pub(crate) fn covers(&self, spheres: usize, drifts: &[Drift; 2], skins: [f64; 2]) -> bool {
+        let left = [0, 1].map(|kind| self.skins[kind] - skins[kind]);
+        self.origin.len() == spheres && are_within(drifts, left)
     }
 
     /// How far spheres, each with its number, are from the places for which the list was made.
     pub(crate) fn drift(&self, unfolded: impl Iterator<Item = (DVec3, usize)>) -> Drift {
-        let here_and_there =
-            unfolded.filter_map(|(place, number)| Some((place, self.origin.get(number)?)));
-        Drift::between(here_and_there)
+        let by = |(place, number): (DVec3, usize)| Some(place - *self.origin.get(number)?);
+        Drift::of(unfolded.filter_map(by))
     }
 
     /// All histories but fresh ones, with their pairs, in order.
@@ -194,7 +190,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         self.carried = carried;
     }
 
-    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, in a time that grows linearly with
+    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 and their skin, in a time that grows linearly with
     /// the number of spheres. All histories must be fresh, and none is looked at before [`Neighbours::carry_on`] or
     /// [`Neighbours::histories_mut`].
     pub(crate) fn rebuild<F: Fn(usize, usize) -> bool + Sync>(
@@ -206,29 +202,32 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     ) where
         H: Sync,
     {
-        let grid = Grid::of(position, rule);
-        let early = rule.admits_all_below.min(position.len());
+        let grains = rule.grains.min(position.len());
+        let [of_grains, of_wall] =
+            [true, false].map(|of_grains| Grid::of(position, rule, of_grains));
         let Self { cells, found, .. } = self;
-        let [early_cells, late_cells] = &mut *cells;
-        let mut sorts = [(early_cells, 0..early), (late_cells, early..position.len())];
-        threads.each(&mut sorts, (), &|_| 0, &|(cells, numbers), ()| {
-            cells.sort(grid, position, rule.diameter, numbers.clone());
+        let [grains_cells, beside, wall_cells] = &mut *cells;
+        let mut sorts = [
+            (grains_cells, of_grains, 0..grains),
+            (beside, of_grains, grains..position.len()),
+            (wall_cells, of_wall, grains..position.len()),
+        ];
+        threads.each(&mut sorts, (), &|_| 0, &|(cells, grid, numbers), ()| {
+            cells.sort(*grid, position, rule, numbers.clone());
         });
         // The partners of a sphere have larger numbers.
-        for (first, found) in found.iter_mut().enumerate() {
-            search(found, &cells[first..], rule, threads);
-        }
-        threads.each(&mut found[1], (), &|_| 0, &|piece, ()| {
+        let [of_grains, of_wall] = found;
+        search(of_grains, &cells[..2], rule, threads);
+        search(of_wall, &cells[2..], rule, threads);
+        threads.each(of_wall, (), &|_| 0, &|piece, ()| {
             piece.found.retain(&rule.admits);
         });
         let found = [&found[0][..], &found[1]];
         self.next
             .collect(position.len(), found, &mut self.collecting, threads);
-        self.skin = rule.skin;
+        (self.grains, self.skins) = (grains, rule.skins);
         self.origin.clear();
-        let unfolded = position.iter().zip(turns);
-        let unfolded = unfolded.map(|(p, &turns)| p.with_z(p.z + f64::from(turns) * rule.length));
-        self.origin.extend(unfolded);
+        self.origin.extend(unfolded(position, turns, rule.length));
         core::mem::swap(&mut self.rows, &mut self.next);
         debug_assert_eq!(self.rows(), position.len());
     }
@@ -251,7 +250,6 @@ fn search<F: Fn(usize, usize) -> bool + Sync>(
     threads.each(pieces, (), &|_| 0, &|piece, ()| {
         Instructions::widest().run(Search {
             cells,
-            skin: rule.skin,
             length: rule.length,
             piece,
         });
@@ -264,40 +262,49 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// Bounds of displacements.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Drift {
-    least: f64,
-    largest: f64,
-    lateral_squared: f64,
+/// Where spheres would be in a tube without a period.
+fn unfolded<'a>(
+    position: &'a [DVec3],
+    turns: &'a [i32],
+    length: f64,
+) -> impl Iterator<Item = DVec3> + use<'a> {
+    let spheres = position.iter().zip(turns);
+    spheres.map(move |(p, &turns)| p.with_z(p.z + f64::from(turns) * length))
 }
 
-impl Default for Drift {
-    fn default() -> Self {
-        Self::NONE
-    }
+/// Bounds of displacements, or of velocities; by default of spheres that stand still.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Drift {
+    /// Along the tube.
+    pub(crate) least: f64,
+    pub(crate) largest: f64,
+    /// Largest across it, whatever the direction.
+    pub(crate) lateral: f64,
 }
 
 impl Drift {
+    /// Of no spheres.
     pub(crate) const NONE: Self = Self {
         least: f64::INFINITY,
         largest: f64::NEG_INFINITY,
-        lateral_squared: 0.0,
+        lateral: 0.0,
+    };
+    /// Of spheres that may be anywhere.
+    pub(crate) const UNBOUNDED: Self = Self {
+        least: 0.0,
+        largest: 0.0,
+        lateral: f64::INFINITY,
     };
 
-    /// Of spheres that are here now and were there.
-    fn between<'a>(here_and_there: impl Iterator<Item = (DVec3, &'a DVec3)>) -> Self {
-        Self::of(here_and_there.map(|(here, there)| here - *there))
-    }
-
-    /// The bounds of these displacements, or velocities.
+    /// The bounds of these displacements or velocities.
     pub(crate) fn of(displacements: impl Iterator<Item = DVec3>) -> Self {
-        let mut drift = Self::NONE;
+        let (mut drift, mut lateral_squared) = (Self::NONE, 0.0);
         for by in displacements {
-            drift.lateral_squared = larger(drift.lateral_squared, by.x * by.x + by.y * by.y);
+            lateral_squared = larger(lateral_squared, by.x * by.x + by.y * by.y);
             drift.least = -larger(-drift.least, -by.z);
             drift.largest = larger(drift.largest, by.z);
         }
+        drift.lateral = lateral_squared.sqrt();
         drift
     }
 
@@ -306,14 +313,41 @@ impl Drift {
         Self {
             least: self.least.min(other.least),
             largest: self.largest.max(other.largest),
-            lateral_squared: self.lateral_squared.max(other.lateral_squared),
+            lateral: self.lateral.max(other.lateral),
         }
     }
 
-    /// By how much two of the spheres may have come closer \[d\]; how fast they may, of velocities.
-    pub(crate) fn approach(self) -> f64 {
-        let axial = (self.largest - self.least).max(0.0);
-        (axial * axial + 4.0 * self.lateral_squared).sqrt()
+    /// Of one displacement after the other.
+    pub(crate) fn then(self, next: Self) -> Self {
+        Self {
+            least: self.least + next.least,
+            largest: self.largest + next.largest,
+            lateral: self.lateral + next.lateral,
+        }
+    }
+
+    /// By how much one of these spheres and one of others may have come closer \[d\]; how fast they may, of velocities.
+    pub(crate) fn approach(self, other: Self) -> f64 {
+        let axial = (self.largest - other.least).max(other.largest - self.least);
+        axial.max(0.0).hypot(self.lateral + other.lateral)
+    }
+}
+
+/// Grains with grains, grains with the wall, the wall with itself.
+const KINDS: [[usize; 2]; 3] = [[0, 0], [0, 1], [1, 1]];
+
+/// Whether no two spheres may have come closer by more than the skin of their pair.
+pub(crate) fn are_within(drifts: &[Drift; 2], skins: [f64; 2]) -> bool {
+    let within = |[a, b]: [usize; 2]| drifts[a].approach(drifts[b]) <= skins[a] + skins[b];
+    KINDS.into_iter().all(within)
+}
+
+/// For how long none do at these velocities; 0 where they never do.
+pub(crate) fn time_within(velocities: &[Drift; 2], skins: [f64; 2]) -> f64 {
+    let rates = KINDS.map(|[a, b]| velocities[a].approach(velocities[b]) / (skins[a] + skins[b]));
+    match rates.into_iter().fold(0.0, larger) {
+        0.0 => 0.0,
+        rate => 1.0 / rate,
     }
 }
 

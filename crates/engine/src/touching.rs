@@ -46,27 +46,20 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     let mut listed_anew = None;
     if !contacts.are_listed(bodies, wall) {
         let contacts = listed_anew.insert(contacts.clone());
-        contacts.rebuild(bodies, wall, 0.0, &Threads::default());
+        contacts.rebuild(bodies, wall, [0.0; 2], &Threads::default());
     }
     let contacts = listed_anew.as_ref().unwrap_or(contacts);
     let mut found = Vec::new();
     for first in 0..bodies.number() {
         let here = bodies.sphere(first);
         let length = wall.length();
-        contacts.for_each_acting(
-            law,
-            bodies,
-            length,
-            first,
-            |_| true,
-            |second, contact, history| {
-                // Wall against wall has no friction.
-                found.extend(match first < bodies.grains {
-                    true => answered(law, contact, *history, first, second),
-                    false => answered(&law.frictionless(), contact, (), first, second),
-                });
-            },
-        );
+        contacts.for_each_acting(law, bodies, length, first, 0, |second, contact, history| {
+            // Wall against wall has no friction.
+            found.extend(match first < bodies.grains {
+                true => answered(law, contact, *history, first, second),
+                false => answered(&law.frictionless(), contact, (), first, second),
+            });
+        });
         if first >= bodies.grains {
             continue;
         }

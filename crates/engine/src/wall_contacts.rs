@@ -61,13 +61,12 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     }
     let grains = bodies.grains;
     for i in 0..grains {
-        let with_wall = |j| j >= grains;
         contacts.for_each_acting(
             law,
             bodies,
             wall.length(),
             i,
-            with_wall,
+            grains,
             |j, contact, history| {
                 let acceleration = bodies.acceleration[i] - bodies.acceleration[j];
                 answer(i, acceleration, contact, *history);

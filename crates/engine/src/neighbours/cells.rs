@@ -18,13 +18,13 @@ pub(crate) struct PairRule<'a, F: Fn(usize, usize) -> bool> {
     pub(crate) diameter: &'a [f64],
     /// Period of the tube \[d\].
     pub(crate) length: f64,
-    /// Added to the reach of every pair \[d\].
-    pub(crate) skin: f64,
+    /// Added to the reach of a pair, for each of its spheres: for a grain, and for a sphere of the wall \[d\].
+    pub(crate) skins: [f64; 2],
     /// Half width of the region where spheres usually are \[d\].
     pub(crate) half_width: f64,
-    /// All pairs i < j whose i is less than this can have a contact.
-    pub(crate) admits_all_below: usize,
-    /// Which of the other pairs i < j can have a contact at all.
+    /// How many spheres are grains; they come first, and all their pairs can have a contact.
+    pub(crate) grains: usize,
+    /// Which pairs i < j of spheres of the wall can have a contact at all.
     pub(crate) admits: F,
 }
 
@@ -72,13 +72,19 @@ impl Grid {
         beside.into_iter().flatten()
     }
 
-    /// Cells at least as wide as the farthest pair of a rule.
+    /// Cells at least as wide as the farthest pair of a rule that has a grain, or of spheres of the wall.
     pub(super) fn of<F: Fn(usize, usize) -> bool>(
         position: &[DVec3],
         rule: &PairRule<'_, F>,
+        of_grains: bool,
     ) -> Self {
         let largest_diameter = rule.diameter.iter().copied().fold(0.0, larger);
-        let cutoff = largest_diameter + rule.skin;
+        let [of_grain, of_wall] = rule.skins;
+        let cutoff = largest_diameter
+            + match of_grains {
+                true => of_grain + larger(of_grain, of_wall),
+                false => 2.0 * of_wall,
+            };
         // Spheres that fly away must not stretch the grid without bound.
         let farthest = position
             .iter()
@@ -128,6 +134,7 @@ impl Grid {
 #[derive(Clone, Debug, Default)]
 struct Side {
     place: Columns,
+    /// Radius, with its part of the skin.
     radius: Vec<f64>,
     number: Vec<u32>,
     /// The numbers once more, to be compared in lanes.
@@ -202,11 +209,11 @@ pub(super) struct Cells {
 
 impl Cells {
     /// Counting sort of some spheres into the cells of a grid.
-    pub(super) fn sort(
+    pub(super) fn sort<F: Fn(usize, usize) -> bool>(
         &mut self,
         grid: Grid,
         position: &[DVec3],
-        diameter: &[f64],
+        rule: &PairRule<'_, F>,
         numbers: Range<usize>,
     ) {
         self.grid = grid;
@@ -233,7 +240,8 @@ impl Cells {
             *place -= 1;
             let at = *place as usize;
             self.spheres.place.set(at, position[sphere]);
-            self.spheres.radius[at] = 0.5 * diameter[sphere];
+            let skin = rule.skins[usize::from(sphere >= rule.grains)];
+            self.spheres.radius[at] = 0.5 * rule.diameter[sphere] + skin;
             self.spheres.number[at] = sphere as u32;
             self.spheres.number_in_lanes[at] = sphere as f64;
         }
@@ -274,11 +282,10 @@ impl Cells {
     }
 }
 
-/// The search, in some cells, for partners: pairs i < j nearer than (d_i + d_j)/2 + skin.
+/// The search, in some cells, for partners: pairs i < j nearer than (d_i + d_j)/2 and their skin.
 pub(super) struct Search<'a> {
     /// In one grid: the spheres i, and all that may be spheres j.
     pub(super) cells: &'a [Cells],
-    pub(super) skin: f64,
     /// Period of the tube \[d\].
     pub(super) length: f64,
     pub(super) piece: &'a mut Piece,
@@ -291,7 +298,6 @@ impl Work for Search<'_> {
     fn run<M: Machine>(self) {
         let Self {
             cells,
-            skin,
             length,
             piece,
         } = self;
@@ -325,7 +331,7 @@ impl Work for Search<'_> {
                     Lanes::splat(centre.y),
                     Lanes::splat(centre.z),
                 );
-                let reach = Lanes::splat(of.spheres.radius[i] + skin);
+                let reach = Lanes::splat(of.spheres.radius[i]);
                 let this = Lanes::splat(of.spheres.number_in_lanes[i]);
                 for block in around.blocks(number) {
                     let places = LaneVector::new(

@@ -13,9 +13,13 @@ struct Spheres {
     position: Vec<DVec3>,
     diameter: Vec<f64>,
     length: f64,
-    skin: f64,
+    /// Of a grain, and of a sphere of the wall.
+    skins: [f64; 2],
     half_width: f64,
 }
+
+/// The first spheres are grains.
+const GRAINS: usize = 4;
 
 impl Spheres {
     fn separation(&self, i: usize, j: usize) -> DVec3 {
@@ -24,13 +28,14 @@ impl Spheres {
         separation
     }
 
-    /// All pairs i < j nearer than (d_i + d_j)/2 + `margin`, of which one is odd.
-    fn pairs(&self, margin: f64) -> BTreeSet<(u32, u32)> {
+    /// All admitted pairs i < j nearer than (d_i + d_j)/2 and these skins.
+    fn pairs(&self, skins: [f64; 2]) -> BTreeSet<(u32, u32)> {
         let number = self.position.len();
+        let reach = |i: usize| 0.5 * self.diameter[i] + skins[usize::from(i >= GRAINS)];
         (0..number)
             .flat_map(|i| (i + 1..number).map(move |j| (i, j)))
             .filter(|&(i, j)| {
-                let reach = 0.5 * (self.diameter[i] + self.diameter[j]) + margin;
+                let reach = reach(i) + reach(j);
                 admits(i, j) && self.separation(i, j).length_squared() < reach * reach
             })
             .map(|(i, j)| (i as u32, j as u32))
@@ -41,9 +46,9 @@ impl Spheres {
         let rule = PairRule {
             diameter: &self.diameter,
             length: self.length,
-            skin: self.skin,
+            skins: self.skins,
             half_width: self.half_width,
-            admits_all_below: 4,
+            grains: GRAINS,
             admits,
         };
         // The list is the same for any number of threads.
@@ -56,33 +61,40 @@ impl Spheres {
 }
 
 fn admits(i: usize, j: usize) -> bool {
-    i < 4 || i % 7 != 3 || j % 5 != 1
+    i < GRAINS || i % 7 != 3 || j % 5 != 1
 }
 
 /// Spheres in a tube of 2.2 cutoffs or longer, some of them far outside.
 fn spheres() -> impl Strategy<Value = Spheres> {
-    (0.0..1.0, 2.2..30.0, 0.3..8.0, 0_usize..120).prop_flat_map(
-        |(skin, cutoffs, half_width, number)| {
-            let length: f64 = cutoffs * (1.0 + skin);
-            let place = (-1.0..1.0, -1.0..1.0, 0.0..1.0, 0..20).prop_map(move |(x, y, z, kind)| {
-                // One in twenty has escaped; some stand at the seam.
-                let out = if kind == 0 { 50.0 } else { half_width };
-                let z: f64 = if kind == 1 { 0.0 } else { z * length };
-                DVec3::new(out * x, out * y, z.min(length * (1.0 - 1e-16)))
-            });
-            (
-                proptest::collection::vec(place, number),
-                proptest::collection::vec(0.3..1.0, number),
-            )
-                .prop_map(move |(position, diameter)| Spheres {
-                    position,
-                    diameter,
-                    length,
-                    skin,
-                    half_width,
-                })
-        },
+    (
+        prop::array::uniform2(0.0..0.6),
+        2.2..30.0,
+        0.3..8.0,
+        0_usize..120,
     )
+        .prop_flat_map(
+            |(skins, cutoffs, half_width, number): ([f64; 2], _, _, _)| {
+                let length: f64 = cutoffs * (1.0 + 2.0 * skins[0].max(skins[1]));
+                let place =
+                    (-1.0..1.0, -1.0..1.0, 0.0..1.0, 0..20).prop_map(move |(x, y, z, kind)| {
+                        // One in twenty has escaped; some stand at the seam.
+                        let out = if kind == 0 { 50.0 } else { half_width };
+                        let z: f64 = if kind == 1 { 0.0 } else { z * length };
+                        DVec3::new(out * x, out * y, z.min(length * (1.0 - 1e-16)))
+                    });
+                (
+                    proptest::collection::vec(place, number),
+                    proptest::collection::vec(0.3..1.0, number),
+                )
+                    .prop_map(move |(position, diameter)| Spheres {
+                        position,
+                        diameter,
+                        length,
+                        skins,
+                        half_width,
+                    })
+            },
+        )
 }
 
 fn listed(list: &Neighbours<u64>) -> Vec<(u32, u32)> {
@@ -98,7 +110,7 @@ proptest! {
         spheres.rebuild(&mut list);
         let listed = listed(&list);
         prop_assert_eq!(list.pairs(), listed.len());
-        let expected: Vec<_> = spheres.pairs(spheres.skin).into_iter().collect();
+        let expected: Vec<_> = spheres.pairs(spheres.skins).into_iter().collect();
         prop_assert_eq!(listed, expected);
     }
 
@@ -120,7 +132,7 @@ proptest! {
         moved.rebuild(&mut list);
         let listed: BTreeSet<_> = listed(&list).into_iter().collect();
         // No memory is lost, not even of spheres that are far apart now.
-        prop_assert!(before.is_subset(&listed) && moved.pairs(moved.skin).is_subset(&listed));
+        prop_assert!(before.is_subset(&listed) && moved.pairs(moved.skins).is_subset(&listed));
         for (i, j, &history) in list.iter() {
             let expected = if before.contains(&(i, j)) { name(i, j) } else { 0 };
             prop_assert_eq!(history, expected);
@@ -148,17 +160,17 @@ proptest! {
             position.z -= turned * moved.length;
             *turns = turned as i32;
         }
-        if !list.outdated(&moved.position, &turns, moved.length, spheres.skin) {
+        if list.holds(&moved.position, &turns, moved.length, 0.0) {
             let listed: BTreeSet<_> = listed(&list).into_iter().collect();
-            prop_assert!(moved.pairs(0.0).is_subset(&listed));
+            prop_assert!(moved.pairs([0.0; 2]).is_subset(&listed));
         }
         // A drift alone outdates nothing.
         let mut drifted = spheres.clone();
         for position in &mut drifted.position {
             position.z += 0.01 * drift;
         }
-        if !drifted.position.is_empty() && spheres.skin > 1e-6 {
-            prop_assert!(!list.outdated(&drifted.position, &vec![0; turns.len()], spheres.length, spheres.skin));
+        if !drifted.position.is_empty() && spheres.skins.iter().all(|&skin| skin > 1e-6) {
+            prop_assert!(list.holds(&drifted.position, &vec![0; turns.len()], spheres.length, 0.0));
         }
     }
 }
@@ -166,5 +178,5 @@ proptest! {
 #[test]
 fn other_spheres_outdate_the_list() {
     let list = Neighbours::<u64>::empty();
-    assert!(list.outdated(&[DVec3::ZERO], &[0], 10.0, 0.3));
+    assert!(!list.holds(&[DVec3::ZERO], &[0], 10.0, 0.0));
 }

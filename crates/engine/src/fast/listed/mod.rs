@@ -23,7 +23,7 @@ use peristalsis_physics::contact::NormalLaw;
 
 use self::book::{Adding, Leg};
 use self::history::PackedHistory;
-use self::motion::{Motion, Moved, Stage, Travel};
+use self::motion::{Motion, Moved, Stage};
 use self::pairs::{Ended, Prune};
 use self::record::Record;
 use self::section::{BesideWall, Section, Shares};
@@ -35,7 +35,7 @@ use crate::fast::threads::{Chains, Cut, Threads};
 use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
 use crate::ledger::Tally;
-use crate::neighbours::{Drift, Neighbours};
+use crate::neighbours::{Drift, Neighbours, are_within, time_within};
 use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
@@ -100,8 +100,10 @@ struct Listed<'a, N, T: PackedHistory> {
     sums: Tally,
     /// Where terms of them are still to be added: whether all are wanted.
     owed: Option<bool>,
-    /// Since pairs were last chosen from the list.
-    travelled: Travel,
+    /// How a grain and a sphere of the wall share the skin of their pair.
+    skin_shares: [f64; 2],
+    /// How far grains and spheres of the wall have moved since pairs were last chosen from the list.
+    travelled: [Drift; 2],
     /// The sections' contacts with a prescribed wall, where several threads serve it.
     beside_wall: Vec<BesideWall<T::History<f64>>>,
 }
@@ -231,11 +233,11 @@ impl Scratch {
     }
 
     /// How far the spheres are from the places for which the list of all was made.
-    fn drift<H: Copy + Default + PartialEq + Sync>(
+    fn drifts<H: Copy + Default + PartialEq + Sync>(
         &mut self,
         list: &Neighbours<H>,
         length: f64,
-    ) -> Drift {
+    ) -> [Drift; 2] {
         self.bounds(|spheres, places| {
             let numbers = spheres.number[places.clone()].iter();
             let places = spheres.position[places].iter();
@@ -244,26 +246,25 @@ impl Scratch {
         })
     }
 
-    /// Bounds over all spheres of what `of` bounds for those of a section.
-    fn bounds(&mut self, of: impl Fn(&Spheres, Range<usize>) -> Drift + Sync) -> Drift {
+    /// How fast they are.
+    fn velocities(&mut self) -> [Drift; 2] {
+        self.bounds(|spheres, places| {
+            Drift::of(spheres.velocity[places].iter().map(|v| v.vector()))
+        })
+    }
+
+    /// Bounds, over all grains and over all spheres of the wall, of what `of` bounds for those at some places.
+    fn bounds(&mut self, of: impl Fn(&Spheres, Range<usize>) -> Drift + Sync) -> [Drift; 2] {
         let spheres = &self.spheres;
         let sections = &mut self.shares.sections[..];
         self.threads.each(sections, (), &|_| 0, &|section, ()| {
-            section.drift = of(spheres, section.own.all());
+            let kinds = [section.own.of_grains(), section.own.of_wall()];
+            section.drifts = kinds.map(|places| of(spheres, places));
         });
-        let drifts = self.shares.sections.iter().map(|section| section.drift);
-        drifts.fold(Drift::NONE, Drift::and)
-    }
-
-    /// For how long no two spheres come closer by more than `skin`, at the velocities that they have.
-    fn time_within(&mut self, skin: f64) -> f64 {
-        let velocities = self.bounds(|spheres, places| {
-            Drift::of(spheres.velocity[places].iter().map(|v| v.vector()))
-        });
-        match velocities.approach() {
-            rate if rate > 0.0 => skin / rate,
-            _ => 0.0,
-        }
+        let drifts = self.shares.sections.iter().map(|section| section.drifts);
+        drifts.fold([Drift::NONE; 2], |[grains, wall], [more, of_wall]| {
+            [grains.and(more), wall.and(of_wall)]
+        })
     }
 
     /// Writes the histories back to where they came from.
@@ -315,17 +316,15 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             mean_wall_force: Record::ZERO,
             sums: Tally::default(),
             owed: None,
+            skin_shares: [0.5; 2],
             // The list may have been made long ago, and nothing is chosen from it yet.
-            travelled: Travel {
-                axial: f64::INFINITY,
-                lateral: 0.0,
-            },
+            travelled: [Drift::UNBOUNDED; 2],
             beside_wall,
         }
     }
 
     /// Moves the spheres, and meanwhile adds up the sums of the last evaluation.
-    fn pass(&mut self) -> Result<Travel, Runaway> {
+    fn pass(&mut self) -> Result<[Drift; 2], Runaway> {
         let Scratch {
             instructions,
             threads,
@@ -351,53 +350,65 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             spheres.all_mut(),
             &Section::length,
             &|section, spheres| {
-                let mut moved = Moved::default();
                 let (of_grains, of_wall) = spheres.cut(section.own.grains);
-                for (spheres, are_grains) in [(of_grains, true), (of_wall, false)] {
-                    let forces = match are_grains {
-                        true => section.forces.of_grains(),
-                        false => section.forces.of_wall(),
-                    };
-                    moved = moved.and(instructions.run(Motion {
-                        spheres,
-                        forces,
-                        of_grains: are_grains,
-                        integrator,
-                        stage,
-                        mean_wall_force,
-                        rotates: T::ROTATES,
-                        body_force: parameters.body_force,
-                        time_step: parameters.time_step,
-                        limit,
-                        length,
-                    }));
-                }
-                if let Some(runaway) = &mut moved.runaway {
-                    runaway.body = number[runaway.body] as usize;
-                }
-                section.moved = moved;
+                section.moved =
+                    [(of_grains, true), (of_wall, false)].map(|(spheres, are_grains)| {
+                        let forces = match are_grains {
+                            true => section.forces.of_grains(),
+                            false => section.forces.of_wall(),
+                        };
+                        let mut moved = instructions.run(Motion {
+                            spheres,
+                            forces,
+                            of_grains: are_grains,
+                            integrator,
+                            stage,
+                            mean_wall_force,
+                            rotates: T::ROTATES,
+                            body_force: parameters.body_force,
+                            time_step: parameters.time_step,
+                            limit,
+                            length,
+                        });
+                        if let Some(runaway) = &mut moved.runaway {
+                            runaway.body = number[runaway.body] as usize;
+                        }
+                        moved
+                    });
             },
             &chains,
         );
         spheres.number = number;
         let moved = sections.iter().map(|section| section.moved);
-        let moved = moved.fold(Moved::default(), Moved::and);
+        let [grains, of_wall] = moved.fold(<[Moved; 2]>::default(), |[a, b], [more, of_wall]| {
+            [a.and(more), b.and(of_wall)]
+        });
         if let Some(adding) = adding {
             adding.finish(&mut self.sums);
             self.add_beside_wall();
         }
-        moved.travel()
+        match grains.and(of_wall).runaway {
+            Some(runaway) => Err(runaway),
+            None => Ok([grains.drift(), of_wall.drift()]),
+        }
+    }
+
+    /// So many skins, for a grain and for a sphere of the wall.
+    fn skins(&self, skins: f64) -> [f64; 2] {
+        self.skin_shares
+            .map(|share| share * skins * self.reference.parameters.skin)
     }
 
     /// Chooses the pairs that may touch in the steps to come; makes the list anew where it does not hold them all.
     fn choose_pairs(&mut self, wall: &Wall) {
-        let (skin, length) = (self.reference.parameters.skin, self.reference.length);
-        let drift = self.scratch.drift(&self.reference.contacts.pairs, length);
+        let length = self.reference.length;
+        let drifts = self.scratch.drifts(&self.reference.contacts.pairs, length);
         let number = self.reference.bodies.number();
         let list = &self.reference.contacts.pairs;
-        if !list.covers(number, drift, CHOSEN * skin) {
+        if !list.covers(number, &drifts, self.skins(CHOSEN)) {
             self.list_anew(wall);
         }
+        let [of_grain, of_wall] = self.skins(CHOSEN);
         let Scratch {
             instructions,
             threads,
@@ -407,23 +418,26 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         } = &mut *self.scratch;
         let position = &spheres.position[..];
         threads.each(&mut shares.pairs, (), &|_| 0, &|of_section, ()| {
-            for pairs in of_section {
+            for (pairs, first) in of_section.iter_mut().zip([of_grain, of_wall]) {
                 instructions.run(Prune {
                     pairs,
                     position,
                     length,
-                    skin: CHOSEN * skin,
+                    skins: [of_grain, of_wall].map(|second| first + second),
                 });
             }
         });
-        self.travelled = Travel::default();
+        self.travelled = Default::default();
     }
 
     fn list_anew(&mut self, wall: &Wall) {
+        let velocities = self.scratch.velocities();
+        self.skin_shares = skin_shares(&velocities);
+        let skins = self.skins(LISTED);
+        let time = time_within(&velocities, self.skins(LISTED - CHOSEN));
         let Self {
             reference, scratch, ..
         } = self;
-        let skin = LISTED * reference.parameters.skin;
         let Reference {
             bodies,
             past,
@@ -433,25 +447,37 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         if scratch.shares.are_worn() {
             scratch.store_spheres(bodies, past);
             scratch.store_histories::<T>(contacts, &self.beside_wall);
-            contacts.rebuild(bodies, wall, skin, &scratch.threads);
+            contacts.rebuild(bodies, wall, skins, &scratch.threads);
             self.beside_wall = scratch.take_up(reference, wall);
             return;
         }
-        let time =
-            LISTED_AHEAD * scratch.time_within((LISTED - CHOSEN) * reference.parameters.skin);
         let spheres = &scratch.spheres;
-        spheres.store_places_ahead(bodies, time, reference.length);
+        spheres.store_places_ahead(bodies, LISTED_AHEAD * time, reference.length);
         scratch.note_pairs();
-        contacts.rebuild_fresh(bodies, wall, skin, &scratch.threads);
+        contacts.rebuild_fresh(bodies, wall, skins, &scratch.threads);
         scratch.load_pairs(reference);
         scratch.find_pairs_again(&reference.contacts.pairs, &reference.law.tangential);
+    }
+}
+
+/// How a grain and a sphere of the wall share a skin: as the speeds of their kinds, by which the list lasts longest.
+fn skin_shares([grains, of_wall]: &[Drift; 2]) -> [f64; 2] {
+    let [grains, of_wall] = [grains, of_wall].map(|kind| kind.approach(*kind));
+    match of_wall / (grains + of_wall) {
+        share if share > 0.0 => {
+            let share = share.clamp(0.25, 0.75);
+            [1.0 - share, share]
+        }
+        _ => [0.5; 2],
     }
 }
 
 impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
     fn move_spheres(&mut self) -> Result<(), Runaway> {
         let travelled = self.pass()?;
-        self.travelled.add(travelled);
+        for (so_far, more) in self.travelled.iter_mut().zip(travelled) {
+            *so_far = so_far.then(more);
+        }
         self.stage = Stage::Between;
         Ok(())
     }
@@ -471,10 +497,7 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
     }
 
     fn evaluate(&mut self, wall: &Wall, complete: bool) {
-        if self
-            .travelled
-            .exceeds(CHOSEN * self.reference.parameters.skin)
-        {
+        if !are_within(&self.travelled, self.skins(CHOSEN)) {
             self.choose_pairs(wall);
         }
         let mut tally = Tally::default();

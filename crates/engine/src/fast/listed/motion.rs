@@ -11,6 +11,7 @@ use crate::fast::machine::{Machine, Work};
 use crate::integrate::adams_bashforth::AdamsBashforth;
 use crate::integrate::verlet::Verlet;
 use crate::integrate::{Runaway, Scheme};
+use crate::neighbours::Drift;
 
 /// Where in an advance the pass stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,28 +24,7 @@ pub(super) enum Stage {
     Last,
 }
 
-/// Bounds of the displacements of a pass, for the list of neighbours.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Travel {
-    /// Largest lateral displacement, or more.
-    pub(super) lateral: f64,
-    /// Largest axial displacement less the least.
-    pub(super) axial: f64,
-}
-
-impl Travel {
-    pub(super) fn add(&mut self, more: Self) {
-        self.lateral += more.lateral;
-        self.axial += more.axial;
-    }
-
-    /// Whether two spheres may have come closer by more than `skin`.
-    pub(super) fn exceeds(self, skin: f64) -> bool {
-        self.axial * self.axial + 4.0 * self.lateral * self.lateral > skin * skin
-    }
-}
-
-/// What a pass did to the spheres of a section.
+/// What a pass did to spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moved {
     /// Least and largest displacement along each axis.
@@ -76,21 +56,19 @@ impl Moved {
         self
     }
 
-    pub(super) fn travel(self) -> Result<Travel, Runaway> {
-        if let Some(runaway) = self.runaway {
-            return Err(runaway);
+    /// The bounds of the displacements.
+    pub(super) fn drift(self) -> Drift {
+        let [least_x, least_y, least, _] = self.least.0;
+        let [largest_x, largest_y, largest, _] = self.largest.0;
+        if least > largest {
+            return Drift::NONE;
         }
-        let [least_x, least_y, least_z, _] = self.least.0;
-        let [largest_x, largest_y, largest_z, _] = self.largest.0;
-        if least_z > largest_z {
-            return Ok(Travel::default());
+        let lateral = largest_x.max(-least_x).hypot(largest_y.max(-least_y));
+        Drift {
+            least,
+            largest,
+            lateral,
         }
-        let x = largest_x.max(-least_x);
-        let y = largest_y.max(-least_y);
-        Ok(Travel {
-            lateral: (x * x + y * y).sqrt(),
-            axial: largest_z - least_z,
-        })
     }
 }
 

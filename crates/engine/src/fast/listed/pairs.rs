@@ -23,7 +23,7 @@ const AHEAD: usize = 4;
 pub(super) struct Flat {
     pub(super) first: Vec<u32>,
     pub(super) second: Vec<u32>,
-    /// Distance below which a pair touches.
+    /// Distance below which a pair touches, with a minus where its second sphere is one of the wall.
     reach: Vec<f64>,
 }
 
@@ -36,13 +36,16 @@ impl Flat {
 
     /// Takes up pairs whose first sphere is at place `first`.
     fn extend(&mut self, first: usize, second: &[u32], spheres: &Spheres) {
-        let diameter = |place: usize| spheres.turning[place].0[3].abs();
-        let own = diameter(first);
+        let diameter = |place: usize| spheres.turning[place].0[3];
+        let own = diameter(first).abs();
         self.first
             .resize(self.first.len() + second.len(), first as u32);
         let second = second.iter().map(|&number| spheres.place[number as usize]);
         self.second.extend(second.clone());
-        let reaches = second.map(|place| 0.5 * (own + diameter(place as usize)));
+        let reaches = second.map(|place| {
+            let other = diameter(place as usize);
+            (0.5 * (own + other.abs())).copysign(other)
+        });
         self.reach.extend(reaches);
     }
 
@@ -53,9 +56,15 @@ impl Flat {
         self.reach.resize(whole, 0.0);
     }
 
-    /// Finds the pairs that are closer than their reach and `skin`.
+    /// Finds the pairs that are closer than their reach and the skin of a pair with a grain, or with a sphere of the wall.
     #[inline(always)]
-    fn find<M: Machine>(&self, position: &[Record], length: f64, skin: f64, found: &mut Found) {
+    fn find<M: Machine>(
+        &self,
+        position: &[Record],
+        length: f64,
+        skins: [f64; 2],
+        found: &mut Found,
+    ) {
         let Found {
             pairs,
             number,
@@ -67,7 +76,8 @@ impl Flat {
             eights.resize(room / LANES, (0, 0));
         }
         let mut end = 0;
-        let (skin, whole) = (Lanes::splat(skin), Lanes::splat(length));
+        let (zero, whole) = (Lanes::splat(0.0), Lanes::splat(length));
+        let [skin, skin_at_wall] = skins.map(Lanes::splat);
         let seconds = self.second.as_chunks::<LANES>().0;
         let blocks = self.first.as_chunks::<LANES>().0.iter();
         let blocks = blocks.zip(seconds).zip(self.reach.as_chunks::<LANES>().0);
@@ -85,9 +95,11 @@ impl Flat {
             let axial = separation.z.abs();
             separation.z = axial.min(whole - axial);
             let squared = separation.squared();
-            let reach = Lanes::load(reach, 0) + skin;
+            let reach = Lanes::load(reach, 0);
+            let skin = Lanes::select(reach.less(zero), skin_at_wall, skin);
+            let reach = reach.abs() + skin;
             // Coincident centres have no normal.
-            let near = squared.less(reach * reach) & Lanes::splat(0.0).less(squared);
+            let near = squared.less(reach * reach) & zero.less(squared);
             let window = pairs[end..].first_chunk_mut().expect("room for a block");
             near.write_down((block * LANES) as u32, window);
             *eight = (end as u32, near.to_bits());
@@ -280,7 +292,7 @@ impl Pairs {
     #[inline(always)]
     pub(super) fn find_contacts<M: Machine>(&mut self, position: &[Record], length: f64) {
         let touching = &mut self.touching;
-        self.near.find::<M>(position, length, 0.0, touching);
+        self.near.find::<M>(position, length, [0.0; 2], touching);
     }
 
     /// How many near pairs touch.
@@ -339,12 +351,13 @@ impl Ended {
     }
 }
 
-/// Chooses from the list the pairs that are closer than their reach and `skin`.
+/// Chooses from the list the pairs that are closer than their reach and a skin.
 pub(super) struct Prune<'a> {
     pub(super) pairs: &'a mut Pairs,
     pub(super) position: &'a [Record],
     pub(super) length: f64,
-    pub(super) skin: f64,
+    /// Of pairs with a grain, and with a sphere of the wall.
+    pub(super) skins: [f64; 2],
 }
 
 impl Work for Prune<'_> {
@@ -361,7 +374,7 @@ impl Work for Prune<'_> {
             memory,
             ..
         } = self.pairs;
-        list.find::<M>(self.position, self.length, self.skin, chosen);
+        list.find::<M>(self.position, self.length, self.skins, chosen);
         near.clear();
         let pairs = chosen.all().iter().map(|&k| k as usize);
         near.first.extend(pairs.clone().map(|k| list.first[k]));
@@ -390,7 +403,7 @@ mod tests {
         #[inline(always)]
         fn run<M: Machine>(self) {
             let Self(flat, position, found) = self;
-            flat.find::<M>(position, 1000.0, 0.0, found);
+            flat.find::<M>(position, 1000.0, [0.0; 2], found);
         }
     }
 

@@ -16,7 +16,7 @@ use crate::wall::memory::WallMemory;
 use crate::wall::sums::Waiting;
 
 /// The work that a grain, and a sphere of the wall, makes besides its pairs, in listed pairs.
-const PAIRS_OF_A_GRAIN: usize = 16;
+const PAIRS_OF_A_GRAIN: usize = 2;
 const PAIRS_OF_A_WALL_SPHERE: usize = 6;
 
 /// Where the wall has no rings, borders are sought at so many places for each section.
@@ -28,11 +28,12 @@ pub(super) struct Section {
     pub(super) number: u16,
     pub(super) own: Own,
     pub(super) forces: Forces,
-    pub(super) moved: Moved,
+    /// Its grains, and its spheres of the wall.
+    pub(super) moved: [Moved; 2],
     /// Behind which of its grains each of its runs ends.
     pub(super) runs: Vec<u32>,
-    /// Room: bounds of displacements or velocities of its spheres.
-    pub(super) drift: Drift,
+    /// Room: bounds of displacements or velocities of both.
+    pub(super) drifts: [Drift; 2],
 }
 
 /// The pairs of a section's rows that other sections compute too.
