@@ -203,8 +203,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         H: Sync,
     {
         let grains = rule.grains.min(position.len());
-        let [of_grains, of_wall] =
-            [true, false].map(|of_grains| Grid::of(position, rule, of_grains));
+        let [of_grains, of_wall] = Grid::of(position, rule);
         let Self { cells, found, .. } = self;
         let [grains_cells, beside, wall_cells] = &mut *cells;
         let mut sorts = [

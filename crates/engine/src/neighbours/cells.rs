@@ -72,27 +72,24 @@ impl Grid {
         beside.into_iter().flatten()
     }
 
-    /// Cells at least as wide as the farthest pair of a rule that has a grain, or of spheres of the wall.
+    /// Cells at least as wide as the farthest pair of a rule that has a grain, and such for pairs of spheres of the wall.
     pub(super) fn of<F: Fn(usize, usize) -> bool>(
         position: &[DVec3],
         rule: &PairRule<'_, F>,
-        of_grains: bool,
-    ) -> Self {
+    ) -> [Self; 2] {
         let largest_diameter = rule.diameter.iter().copied().fold(0.0, larger);
-        let [of_grain, of_wall] = rule.skins;
-        let cutoff = largest_diameter
-            + match of_grains {
-                true => of_grain + larger(of_grain, of_wall),
-                false => 2.0 * of_wall,
-            };
         // Spheres that fly away must not stretch the grid without bound.
         let farthest = position
             .iter()
             .fold(0.0, |far, p| larger(larger(far, p.x.abs()), p.y.abs()));
-        let usual_half_width = rule.half_width + cutoff;
-        let half_width = farthest.min(usual_half_width).max(0.5 * cutoff);
-        // Never many more cells than spheres.
-        Self::new(half_width, cutoff, rule.length, 4 * position.len())
+        let [of_grain, of_wall] = rule.skins;
+        [of_grain + larger(of_grain, of_wall), of_wall + of_wall].map(|skin| {
+            let cutoff = largest_diameter + skin;
+            let usual_half_width = rule.half_width + cutoff;
+            let half_width = farthest.min(usual_half_width).max(0.5 * cutoff);
+            // Never many more cells than spheres.
+            Self::new(half_width, cutoff, rule.length, 4 * position.len())
+        })
     }
 
     /// Cells at least `cutoff` wide, about `most` of them at most where there are several along the tube.
