@@ -100,7 +100,7 @@ struct Listed<'a, N, T: PackedHistory> {
     sums: Tally,
     /// Where terms of them are still to be added: whether all are wanted.
     owed: Option<bool>,
-    /// How a grain and a sphere of the wall share the skin of their pair.
+    /// The parts that a grain and a sphere of the wall have in the skin of a pair.
     skin_shares: [f64; 2],
     /// How far grains and spheres of the wall have moved since pairs were last chosen from the list.
     travelled: [Drift; 2],
@@ -460,13 +460,15 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
     }
 }
 
-/// How a grain and a sphere of the wall share a skin: as the speeds of their kinds, by which the list lasts longest.
+/// The parts that a grain and a sphere of the wall have in a skin: as the speeds of their kinds, by which the list lasts
+/// longest. Pairs with a grain have a whole skin at most.
 fn skin_shares([grains, of_wall]: &[Drift; 2]) -> [f64; 2] {
     let [grains, of_wall] = [grains, of_wall].map(|kind| kind.approach(*kind));
     match of_wall / (grains + of_wall) {
         share if share > 0.0 => {
             let share = share.clamp(0.25, 0.75);
-            [1.0 - share, share]
+            let most = (2.0 * (1.0 - share)).max(1.0);
+            [1.0 - share, share].map(|part| part / most)
         }
         _ => [0.5; 2],
     }
