@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 use proptest::prelude::*;
 
-use super::{Neighbours, PairRule};
+use super::{Drift, Neighbours, PairRule, are_within, time_within};
 use crate::fast::threads::Threads;
 
 #[derive(Clone, Debug)]
@@ -171,6 +171,45 @@ proptest! {
         }
         if !drifted.position.is_empty() && spheres.skins.iter().all(|&skin| skin > 1e-6) {
             prop_assert!(list.holds(&drifted.position, &vec![0; turns.len()], spheres.length, 0.0));
+        }
+    }
+}
+
+/// Steps of grains and of spheres of the wall, each kind with a drift of its own.
+fn steps() -> impl Strategy<Value = [Vec<DVec3>; 2]> {
+    let unit = (-1.0..1.0, -1.0..1.0, -1.0..1.0);
+    let sizes = (0.0..0.5, 0.0..0.5, -0.5..0.5);
+    let of_kind = (proptest::collection::vec(unit, 10), sizes);
+    prop::array::uniform2(of_kind).prop_map(|kinds| {
+        kinds.map(|(units, (across, along, drift))| {
+            let units = units.into_iter();
+            units
+                .map(|(x, y, z)| DVec3::new(across * x, across * y, along * z + drift))
+                .collect()
+        })
+    })
+}
+
+proptest! {
+    /// No two spheres come closer by more than their skin, in two steps whose bounds are within the skins, or in the time that
+    /// these last at the velocities of the first.
+    #[test]
+    fn spheres_within_their_skins_come_no_closer(
+        [first, second] in prop::array::uniform2(steps()),
+        skins in prop::array::uniform2(0.0..2.0),
+    ) {
+        let bounds = |kinds: &[Vec<DVec3>; 2]| [0, 1].map(|kind| Drift::of(kinds[kind].iter().copied()));
+        let (of_first, of_second) = (bounds(&first), bounds(&second));
+        let within = are_within(&[0, 1].map(|kind| of_first[kind].then(of_second[kind])), skins);
+        let time = time_within(&of_first, skins);
+        let number = first[0].len();
+        for (a, b) in (0..2 * number).flat_map(|a| (0..2 * number).map(move |b| (a, b))) {
+            let skin = skins[a / number] + skins[b / number] + 1e-12;
+            let apart = |steps: &[Vec<DVec3>; 2]| {
+                steps[a / number][a % number] - steps[b / number][b % number]
+            };
+            prop_assert!(!within || (apart(&first) + apart(&second)).length() <= skin);
+            prop_assert!(time * apart(&first).length() <= skin);
         }
     }
 }
