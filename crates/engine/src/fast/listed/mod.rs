@@ -23,7 +23,7 @@ use peristalsis_physics::contact::NormalLaw;
 
 use self::book::{Adding, Leg};
 use self::history::PackedHistory;
-use self::motion::{Motion, Stage};
+use self::motion::{Motion, Moved, Stage};
 use self::pairs::{Ended, Prune};
 use self::record::Record;
 use self::section::{BesideWall, Section, Shares};
@@ -35,7 +35,7 @@ use crate::fast::threads::{Chains, Cut, Threads};
 use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
 use crate::ledger::Tally;
-use crate::neighbours::{Drift, Neighbours, are_within, skin_shares, time_within};
+use crate::neighbours::{Drift, Neighbours, are_within, time_within};
 use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
@@ -261,7 +261,10 @@ impl Scratch {
             let kinds = [section.own.of_grains(), section.own.of_wall()];
             section.drifts = kinds.map(|places| of(spheres, places));
         });
-        Section::drifts_of_all(sections)
+        let drifts = self.shares.sections.iter().map(|section| section.drifts);
+        drifts.fold([Drift::NONE; 2], |[grains, wall], [more, of_wall]| {
+            [grains.and(more), wall.and(of_wall)]
+        })
     }
 
     /// Writes the histories back to where they came from.
@@ -348,42 +351,46 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             &Section::length,
             &|section, spheres| {
                 let (of_grains, of_wall) = spheres.cut(section.own.grains);
-                let moved = [(of_grains, true), (of_wall, false)].map(|(spheres, are_grains)| {
-                    let forces = match are_grains {
-                        true => section.forces.of_grains(),
-                        false => section.forces.of_wall(),
-                    };
-                    instructions.run(Motion {
-                        spheres,
-                        forces,
-                        of_grains: are_grains,
-                        integrator,
-                        stage,
-                        mean_wall_force,
-                        rotates: T::ROTATES,
-                        body_force: parameters.body_force,
-                        time_step: parameters.time_step,
-                        limit,
-                        length,
-                    })
-                });
-                section.drifts = moved.map(|moved| moved.drift);
-                section.runaway = moved.into_iter().find_map(|moved| moved.runaway);
-                if let Some(runaway) = &mut section.runaway {
-                    runaway.body = number[runaway.body] as usize;
-                }
+                section.moved =
+                    [(of_grains, true), (of_wall, false)].map(|(spheres, are_grains)| {
+                        let forces = match are_grains {
+                            true => section.forces.of_grains(),
+                            false => section.forces.of_wall(),
+                        };
+                        let mut moved = instructions.run(Motion {
+                            spheres,
+                            forces,
+                            of_grains: are_grains,
+                            integrator,
+                            stage,
+                            mean_wall_force,
+                            rotates: T::ROTATES,
+                            body_force: parameters.body_force,
+                            time_step: parameters.time_step,
+                            limit,
+                            length,
+                        });
+                        if let Some(runaway) = &mut moved.runaway {
+                            runaway.body = number[runaway.body] as usize;
+                        }
+                        moved
+                    });
             },
             &chains,
         );
         spheres.number = number;
-        let runaways = sections.iter().filter_map(|section| section.runaway);
-        let runaway = runaways.min_by_key(|runaway| runaway.body);
-        let drifts = Section::drifts_of_all(sections);
+        let moved = sections.iter().map(|section| section.moved);
+        let [grains, of_wall] = moved.fold(<[Moved; 2]>::default(), |[a, b], [more, of_wall]| {
+            [a.and(more), b.and(of_wall)]
+        });
         if let Some(adding) = adding {
             adding.finish(&mut self.sums);
             self.add_beside_wall();
         }
-        runaway.map_or(Ok(drifts), Err)
+        match grains.and(of_wall).runaway {
+            Some(runaway) => Err(runaway),
+            None => Ok([grains.drift(), of_wall.drift()]),
+        }
     }
 
     /// So many skins, for a grain and for a sphere of the wall.
@@ -395,9 +402,9 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
     /// Chooses the pairs that may touch in the steps to come; makes the list anew where it does not hold them all.
     fn choose_pairs(&mut self, wall: &Wall) {
         let length = self.reference.length;
+        let drifts = self.scratch.drifts(&self.reference.contacts.pairs, length);
         let number = self.reference.bodies.number();
         let list = &self.reference.contacts.pairs;
-        let drifts = self.scratch.drifts(list, length);
         if !list.covers(number, &drifts, self.skins(CHOSEN)) {
             self.list_anew(wall);
         }
@@ -409,11 +416,12 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
             shares,
             ..
         } = &mut *self.scratch;
+        let position = &spheres.position[..];
         threads.each(&mut shares.pairs, (), &|_| 0, &|of_section, ()| {
             for (pairs, first) in of_section.iter_mut().zip([of_grain, of_wall]) {
                 instructions.run(Prune {
                     pairs,
-                    position: &spheres.position,
+                    position,
                     length,
                     skins: [of_grain, of_wall].map(|second| first + second),
                 });
@@ -449,6 +457,20 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         contacts.rebuild_fresh(bodies, wall, skins, &scratch.threads);
         scratch.load_pairs(reference);
         scratch.find_pairs_again(&reference.contacts.pairs, &reference.law.tangential);
+    }
+}
+
+/// The parts that a grain and a sphere of the wall have in a skin: as the speeds of their kinds, by which the list lasts
+/// longest. Pairs with a grain have a whole skin at most.
+fn skin_shares([grains, of_wall]: &[Drift; 2]) -> [f64; 2] {
+    let [grains, of_wall] = [grains, of_wall].map(|kind| kind.approach(*kind));
+    match of_wall / (grains + of_wall) {
+        share if share > 0.0 => {
+            let share = share.clamp(0.25, 0.75);
+            let most = (2.0 * (1.0 - share)).max(1.0);
+            [1.0 - share, share].map(|part| part / most)
+        }
+        _ => [0.5; 2],
     }
 }
 

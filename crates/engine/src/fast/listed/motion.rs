@@ -27,10 +27,49 @@ pub(super) enum Stage {
 /// What a pass did to spheres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moved {
-    /// Bounds of the displacements.
-    pub(super) drift: Drift,
+    /// Least and largest displacement along each axis.
+    least: Record,
+    largest: Record,
     /// The first that moved too far, and stayed where it was.
     pub(super) runaway: Option<Runaway>,
+}
+
+impl Default for Moved {
+    fn default() -> Self {
+        Self {
+            least: Record([f64::INFINITY; 4]),
+            largest: Record([f64::NEG_INFINITY; 4]),
+            runaway: None,
+        }
+    }
+}
+
+impl Moved {
+    /// Of these spheres and of others.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        for axis in 0..3 {
+            self.least.0[axis] = self.least.0[axis].min(other.least.0[axis]);
+            self.largest.0[axis] = self.largest.0[axis].max(other.largest.0[axis]);
+        }
+        let runaways = [self.runaway, other.runaway].into_iter().flatten();
+        self.runaway = runaways.min_by_key(|runaway| runaway.body);
+        self
+    }
+
+    /// The bounds of the displacements.
+    pub(super) fn drift(self) -> Drift {
+        let [least_x, least_y, least, _] = self.least.0;
+        let [largest_x, largest_y, largest, _] = self.largest.0;
+        if least > largest {
+            return Drift::NONE;
+        }
+        let lateral = largest_x.max(-least_x).hypot(largest_y.max(-least_y));
+        Drift {
+            least,
+            largest,
+            lateral,
+        }
+    }
 }
 
 impl Spheres {
@@ -118,7 +157,8 @@ impl Motion<'_> {
             }
         }
         Moved {
-            drift: extremes.drift(),
+            least: extremes.least.record(),
+            largest: extremes.largest.record(),
             runaway: extremes.runaway,
         }
     }
@@ -232,19 +272,5 @@ impl<M: Machine> Extremes<M> {
     fn add(&mut self, by: Quad<M>) {
         self.least = self.least.min(by);
         self.largest = self.largest.max(by);
-    }
-
-    fn drift(&self) -> Drift {
-        let [least_x, least_y, least, _] = self.least.record().0;
-        let [largest_x, largest_y, largest, _] = self.largest.record().0;
-        if least > largest {
-            return Drift::NONE;
-        }
-        let lateral = largest_x.max(-least_x).hypot(largest_y.max(-least_y));
-        Drift {
-            least,
-            largest,
-            lateral,
-        }
     }
 }

@@ -4,12 +4,12 @@
 //! counts it.
 
 use super::book::{AllTerms, Leg, Run};
+use super::motion::Moved;
 use super::network::Rings;
 use super::pairs::{Border, Pairs};
 use super::spheres::{Forces, Own, Spheres};
 use crate::bodies::Bodies;
 use crate::fast::threads::Threads;
-use crate::integrate::Runaway;
 use crate::neighbours::{Drift, Neighbours};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
@@ -28,12 +28,12 @@ pub(super) struct Section {
     pub(super) number: u16,
     pub(super) own: Own,
     pub(super) forces: Forces,
+    /// Its grains, and its spheres of the wall.
+    pub(super) moved: [Moved; 2],
     /// Behind which of its grains each of its runs ends.
     pub(super) runs: Vec<u32>,
-    /// Bounds of displacements or velocities of its grains, and of its spheres of the wall.
+    /// Room: bounds of displacements or velocities of both.
     pub(super) drifts: [Drift; 2],
-    /// Its first sphere that moved too far in a pass.
-    pub(super) runaway: Option<Runaway>,
 }
 
 /// The pairs of a section's rows that other sections compute too.
@@ -75,14 +75,6 @@ pub(super) struct Shares {
 impl Section {
     pub(super) fn length(&self) -> usize {
         self.own.number
-    }
-
-    /// The bounds of these sections over all their spheres.
-    pub(super) fn drifts_of_all(sections: &[Self]) -> [Drift; 2] {
-        let drifts = sections.iter().map(|section| section.drifts);
-        drifts.fold([Drift::NONE; 2], |[grains, wall], [more, of_wall]| {
-            [grains.and(more), wall.and(of_wall)]
-        })
     }
 
     /// Lists its pairs: the rows of its spheres, and of those of others the pairs that it has a sphere of.
