@@ -220,7 +220,10 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
 fn add_ended(pairs: &mut [[Pairs; 2]], room: &mut Vec<Ended>, tally: &mut Tally) {
     room.clear();
     for [of_grains, _] in pairs {
-        room.append(&mut of_grains.ended);
+        // Where none has ended nothing is written, for which another core would wait.
+        if !of_grains.ended.is_empty() {
+            room.append(&mut of_grains.ended);
+        }
     }
     room.sort_unstable_by_key(|ended| ended.spheres);
     for ended in &*room {

@@ -136,8 +136,10 @@ pub(super) struct Rings {
     /// The ring at hand, and the one above it, in turn.
     at_hand: [Ring; 2],
     rows: Rows,
-    /// Sums of the forces on the spheres of each ring, and of their velocities.
+    /// Sums of the forces on the spheres of each ring, and of their velocities. They are written to `of_rings` together: a
+    /// core that writes where another has read waits, for each line of memory by itself or for all at once.
     pub(super) of_rings: Vec<[Record; 2]>,
+    sums: Vec<[Record; 2]>,
     /// Where there are several sections.
     pub(super) terms: WallTerms,
 }
@@ -199,6 +201,7 @@ impl WallForces<'_> {
             at_hand: [here, above],
             rows,
             of_rings,
+            sums: sums_of_rings,
             ..
         } = &mut *self.rings;
         let Moving {
@@ -216,6 +219,7 @@ impl WallForces<'_> {
         let start = |ring: usize| self.places[ring * per_ring] as usize;
         let from = |ring: usize| (&position[start(ring)..], &velocity[start(ring)..]);
         of_rings.clear();
+        sums_of_rings.clear();
         let first = (0..all).find(|&ring| start(ring) == self.first);
         let Some(first) = first else {
             return;
@@ -254,8 +258,9 @@ impl WallForces<'_> {
                     *force = (force.quad() - mean).record();
                 }
             }
-            of_rings.push([ring_force.record(), ring_velocity.record()]);
+            sums_of_rings.push([ring_force.record(), ring_velocity.record()]);
         }
+        of_rings.extend_from_slice(sums_of_rings);
     }
 }
 
