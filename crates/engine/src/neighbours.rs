@@ -341,6 +341,20 @@ pub(crate) fn are_within(drifts: &[Drift; 2], skins: [f64; 2]) -> bool {
     KINDS.into_iter().all(within)
 }
 
+/// The parts that a grain and a sphere of the wall have in a skin: as the speeds of their kinds, by which the list lasts
+/// longest. Pairs with a grain have a whole skin at most.
+pub(crate) fn skin_shares([grains, of_wall]: &[Drift; 2]) -> [f64; 2] {
+    let [grains, of_wall] = [grains, of_wall].map(|kind| kind.approach(*kind));
+    match of_wall / (grains + of_wall) {
+        share if share > 0.0 => {
+            let share = share.clamp(0.25, 0.75);
+            let most = (2.0 * (1.0 - share)).max(1.0);
+            [1.0 - share, share].map(|part| part / most)
+        }
+        _ => [0.5; 2],
+    }
+}
+
 /// For how long none do at these velocities; 0 where they never do.
 pub(crate) fn time_within(velocities: &[Drift; 2], skins: [f64; 2]) -> f64 {
     let rates = KINDS.map(|[a, b]| velocities[a].approach(velocities[b]) / (skins[a] + skins[b]));

@@ -2,12 +2,13 @@
 
 use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
+use super::beside_wall::BesideWall;
 use super::book::{Adding, MeanForce};
 use super::contacts::PairForces;
 use super::history::PackedHistory;
 use super::network::{Rings, WallForces};
 use super::pairs::{Ended, Pairs};
-use super::section::{BesideWall, Section, Shares};
+use super::section::{Section, Shares};
 use super::spheres::{GrainsMut, Moving, Spheres};
 use super::{Listed, Scratch};
 use crate::fast::machine::Instructions;
@@ -198,21 +199,6 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
         legs.for_each(|leg| adding.add(leg));
         adding.finish(&mut self.sums);
         self.add_beside_wall();
-    }
-
-    /// Adds the sums over contacts with a prescribed wall, where several threads serve it, behind those of all others.
-    pub(super) fn add_beside_wall(&mut self) {
-        if self.beside_wall.is_empty() {
-            return;
-        }
-        let grains = self.scratch.spheres.grains;
-        for &section in &self.scratch.shares.section_of[..grains] {
-            let BesideWall { sums, .. } = &mut self.beside_wall[section as usize];
-            sums.add_row(&mut self.sums);
-        }
-        for BesideWall { sums, .. } in &mut self.beside_wall {
-            sums.clear();
-        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! Several threads share out sections of the tube ([`section`]), each with every contact of its spheres. Every sphere adds
 //! in the order of the list, and every sum has the order that one section gives it ([`book`]): the bits are the same.
 
+mod beside_wall;
 mod book;
 mod contacts;
 mod forces;
@@ -21,12 +22,13 @@ use core::ops::Range;
 
 use peristalsis_physics::contact::NormalLaw;
 
+use self::beside_wall::BesideWall;
 use self::book::{Adding, Leg};
 use self::history::PackedHistory;
 use self::motion::{Motion, Moved, Stage};
 use self::pairs::{Ended, Prune};
 use self::record::Record;
-use self::section::{BesideWall, Section, Shares};
+use self::section::{Section, Shares};
 use self::spheres::Spheres;
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
@@ -35,11 +37,9 @@ use crate::fast::threads::{Chains, Cut, Threads};
 use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
 use crate::ledger::Tally;
-use crate::neighbours::{Drift, Neighbours, are_within, time_within};
+use crate::neighbours::{Drift, Neighbours, are_within, skin_shares, time_within};
 use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
-use crate::wall::memory::WallMemory;
-use crate::wall::sums::Waiting;
 
 /// Room to work in, kept from advance to advance.
 #[derive(Clone, Debug, Default)]
@@ -178,26 +178,6 @@ impl Scratch {
         }
     }
 
-    /// The sections' contacts with a prescribed wall, where there are several threads.
-    fn beside_wall<N, T: PackedHistory>(
-        &self,
-        reference: &Reference<'_, N, T>,
-        wall: &Wall,
-    ) -> Vec<BesideWall<T::History<f64>>> {
-        if !self.threads.several() || wall.elastic().is_some() {
-            return Vec::new();
-        }
-        let memory = &reference.contacts.wall;
-        let beside = |section: &Section| {
-            let numbers = self.spheres.number[section.own.of_grains()].iter();
-            BesideWall {
-                memory: memory.part(numbers.map(|&number| number as usize)),
-                sums: Waiting::default(),
-            }
-        };
-        self.shares.sections.iter().map(beside).collect()
-    }
-
     /// Makes the lists of the sections from that of all; what they remember they find again with
     /// [`Pairs::find_again`](pairs::Pairs::find_again).
     fn load_pairs<N, T: PackedHistory>(&mut self, reference: &Reference<'_, N, T>) {
@@ -280,29 +260,6 @@ impl Scratch {
             of_grains.store::<T>(section.own, contacts.pairs.histories_mut());
         }
         self.store_wall_memory::<T>(contacts, beside_wall);
-    }
-
-    fn store_wall_memory<T: PackedHistory>(
-        &self,
-        contacts: &mut Contacts<T::History<f64>>,
-        beside_wall: &[BesideWall<T::History<f64>>],
-    ) {
-        if beside_wall.is_empty() {
-            return;
-        }
-        let Shares {
-            sections,
-            section_of,
-            ..
-        } = &self.shares;
-        contacts.wall = WallMemory::default();
-        let grains = self.spheres.place[..self.spheres.grains].iter();
-        for (&place, &section) in grains.zip(section_of) {
-            let section = section as usize;
-            let within = place as usize - sections[section].own.start;
-            let memory = &beside_wall[section].memory;
-            contacts.wall.append(memory, within);
-        }
     }
 }
 
@@ -457,20 +414,6 @@ impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
         contacts.rebuild_fresh(bodies, wall, skins, &scratch.threads);
         scratch.load_pairs(reference);
         scratch.find_pairs_again(&reference.contacts.pairs, &reference.law.tangential);
-    }
-}
-
-/// The parts that a grain and a sphere of the wall have in a skin: as the speeds of their kinds, by which the list lasts
-/// longest. Pairs with a grain have a whole skin at most.
-fn skin_shares([grains, of_wall]: &[Drift; 2]) -> [f64; 2] {
-    let [grains, of_wall] = [grains, of_wall].map(|kind| kind.approach(*kind));
-    match of_wall / (grains + of_wall) {
-        share if share > 0.0 => {
-            let share = share.clamp(0.25, 0.75);
-            let most = (2.0 * (1.0 - share)).max(1.0);
-            [1.0 - share, share].map(|part| part / most)
-        }
-        _ => [0.5; 2],
     }
 }
 

@@ -12,8 +12,6 @@ use crate::bodies::Bodies;
 use crate::fast::threads::Threads;
 use crate::neighbours::{Drift, Neighbours};
 use crate::wall::Wall;
-use crate::wall::memory::WallMemory;
-use crate::wall::sums::Waiting;
 
 /// The work that a grain, and a sphere of the wall, makes besides its pairs, in listed pairs.
 const PAIRS_OF_A_GRAIN: usize = 2;
@@ -40,13 +38,6 @@ pub(super) struct Section {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Offer {
     pub(super) borders: Vec<Border>,
-}
-
-/// A section of grains in a prescribed wall.
-pub(super) struct BesideWall<H> {
-    /// Histories of contacts with the wall; its grains are counted from 0.
-    pub(super) memory: WallMemory<H>,
-    pub(super) sums: Waiting,
 }
 
 /// How the spheres are shared out to sections.
