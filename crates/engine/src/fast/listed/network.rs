@@ -136,9 +136,10 @@ pub(super) struct Rings {
     /// The ring at hand, and the one above it, in turn.
     at_hand: [Ring; 2],
     rows: Rows,
-    /// Sums of the forces on the spheres of each ring, and of their velocities. They are written to `of_rings` together: a
-    /// core that writes where another has read waits, for each line of memory by itself or for all at once.
+    /// Sums of the forces on the spheres of each ring, and of their velocities, for another thread to read. A core waits to
+    /// write where another has read, so they are written here all at once.
     pub(super) of_rings: Vec<[Record; 2]>,
+    /// Room: the same, ring by ring.
     sums: Vec<[Record; 2]>,
     /// Where there are several sections.
     pub(super) terms: WallTerms,
