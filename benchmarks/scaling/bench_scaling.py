@@ -107,7 +107,7 @@ def ensemble(program, runs, quick):
 
 
 def threads(program, runs, quick):
-    """Runs of smooth grains, and of rough ones in an elastic tube, few and many."""
+    """Runs of frictionless grains, and of frictional ones in an elastic tube, few and many."""
     waves, periods = (500, 1) if quick else (5000, 3)
     for name, arguments in [
         ("smooth", tube(waves, periods, "drive.width=2.7")),

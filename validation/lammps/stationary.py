@@ -102,8 +102,8 @@ FRICTIONAL_POINTS = [
 ]
 # y points upwards, and the wave runs towards -z. Tubes that grains leave would tell of how long these are followed.
 GRAVITY_POINTS = [
-    Point("lying-smooth", FINE, 0.1, 2.6, "rest", 40, 100, SMOOTH, ROUNDS, (0.0, -0.01, 0.0)),
-    Point("uphill-smooth", FINE, 0.1, 2.6, "rest", 40, 100, SMOOTH, ROUNDS, (0.0, 0.0, 0.002)),
+    Point("lying-frictionless", FINE, 0.1, 2.6, "rest", 40, 100, SMOOTH, ROUNDS, (0.0, -0.01, 0.0)),
+    Point("uphill-frictionless", FINE, 0.1, 2.6, "rest", 40, 100, SMOOTH, ROUNDS, (0.0, 0.0, 0.002)),
     Point("lying-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.0, -0.004, 0.0)),
     Point("oblique-frictional", COARSE, 0.02, 2.75, "rest", 6, 20, FRICTIONAL, ROUNDS, (0.002, -0.003, 0.001)),
 ]
@@ -116,8 +116,8 @@ COHESION_POINTS = [
     Point("pull", COARSE, 0.05, 2.6, "jammed", 6, 20, COHESIVE, PULL_ROUNDS),
 ]
 JKR_POINTS = [
-    Point("smooth", COARSE, 0.02, 2.75, "rest", 6, 20, ADHESIVE, ROUNDS),
-    Point("smooth", COARSE, 0.05, 2.6, "jammed", 6, 20, ADHESIVE, ROUNDS),
+    Point("frictionless", COARSE, 0.02, 2.75, "rest", 6, 20, ADHESIVE, ROUNDS),
+    Point("frictionless", COARSE, 0.05, 2.6, "jammed", 6, 20, ADHESIVE, ROUNDS),
     Point("frictional", COARSE, 0.02, 2.75, "rest", 6, 20, ADHESIVE_FRICTIONAL, ROUNDS),
 ]
 QUICK_POINTS = ("coarse-0.05-2.75-rest", "coarse-0.05-2.85-rest")

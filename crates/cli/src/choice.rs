@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use peristalsis_run::Field::{
-    AngularVelocity, AxialDisplacement, AxialVelocity, Coordination, Diameter, Phase, Pressure,
+    AngularVelocity, AxialDisplacement, AxialVelocity, Coordination, Diameter, Position, Pressure,
     Speed,
 };
 use peristalsis_run::FilmFormat::{Apng, Gif, Mp4, Webm};
@@ -59,7 +59,7 @@ pub const FIELDS: &[Choice<Field>] = &[
     ("diameter", Diameter, "d_i"),
     ("axial-displacement", AxialDisplacement, BY_DISPLACEMENT),
     ("angular-velocity", AngularVelocity, BY_ROTATION),
-    ("phase", Phase, "(z - c t)/lambda"),
+    ("position", Position, "(z - c t)/lambda"),
     ("coordination", Coordination, "spheres that a grain touches"),
     ("pressure", Pressure, BY_PRESSURE),
 ];

@@ -303,7 +303,7 @@ pub struct Run {
     pub integrator: Integrator,
     /// Which kernel computes the forces.
     pub kernel: Kernel,
-    /// Seed of the random numbers that place the grains.
+    /// Seed of the random numbers of the grains: their places, diameters, initial temperature and choice of place at an inlet.
     #[schemars(extend("x-unit" = "1", "maximum" = i64::MAX))]
     pub seed: u64,
     /// How much farther the neighbour search looks than contacts reach. It changes speed and rounding, not the physics.

@@ -32,7 +32,7 @@ pub const PRESETS: &[Preset] = &[
     preset!("sand-pump", "Sand with its weight in a lying hose that a wave squeezes to half of its bore, in SI units."),
     preset!("soft-robot", "Plastic beads with their weight in a lying tube of four segments that close in turn, in SI units."),
     preset!("silo", "Glass beads that fall through an open tube with a standing bottleneck, in SI units."),
-    preset!("oesophagus", "A bolus of wet grains in a lying elastic tube that a travelling force squeezes, in SI units."),
+    preset!("oesophagus", "Two boluses of wet grains in a lying elastic tube that a travelling force squeezes, in SI units."),
 ];
 
 /// The preset of a name.

@@ -63,7 +63,7 @@ impl Tally {
         self.total_overlap += overlap;
     }
 
-    /// Adds the contacts of smooth grains in a prescribed wall that another part of the same evaluation has found.
+    /// Adds the contacts of frictionless grains in a prescribed wall that another part of the same evaluation has found.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.contact_energy += other.contact_energy;
         self.wall_power += other.wall_power;

@@ -141,7 +141,7 @@ impl Simulation {
         }
     }
 
-    /// Hands equal smooth grains in a prescribed tube to the kernel that is made for them.
+    /// Hands equal frictionless grains in a prescribed tube to the kernel that is made for them.
     fn choose_kernel(&mut self, sorting: Option<&Sorting>) {
         let (bodies, wall, parameters) = (&self.bodies, &self.course.wall, &self.parameters);
         // Its order along the tube is lost where grains are put elsewhere.

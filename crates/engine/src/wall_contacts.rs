@@ -78,7 +78,7 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
 /// Grains whose contacts are added up by themselves.
 const PIECE: usize = 2048;
 
-/// The same for smooth grains in a tube that no force moves, added up piece by piece of the grains, by threads where there are any.
+/// The same for frictionless grains in a tube that no force moves, added up piece by piece of the grains, by threads where there are any.
 /// Pieces do not depend on threads, so that sums do not either.
 pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     normal: N,

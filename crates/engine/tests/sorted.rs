@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 
-/// Equal smooth grains, packed, in a narrow and in a wide tube, given velocities that mix them.
+/// Equal frictionless grains, packed, in a narrow and in a wide tube, given velocities that mix them.
 fn mixed() -> Vec<(Bodies, Wall)> {
     [
         (coarse(3), 1.5, 2.5, 130),

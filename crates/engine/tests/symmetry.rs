@@ -61,7 +61,7 @@ fn the_mirror_image_flows_the_other_way() {
     }
 }
 
-/// A kernel whose sums do not depend on when neighbours were last searched: all but the one that keeps smooth grains in
+/// A kernel whose sums do not depend on when neighbours were last searched: all but the one that keeps frictionless grains in
 /// the order of z.
 fn skinless(friction: Option<CundallStrack>) -> Kernel {
     match friction {

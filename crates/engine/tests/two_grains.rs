@@ -223,7 +223,7 @@ fn changes(
 }
 
 /// Velocity Verlet keeps both to rounding. So does Adams-Bashforth the momentum; its angular momentum, which is not
-/// linear in the state, only to order 2, with smooth grains as with rough ones.
+/// linear in the state, only to order 2, with frictionless grains as with frictional ones.
 #[test]
 fn momentum_and_angular_momentum_are_kept() {
     for (name, normal) in [("linear", LINEAR), ("hertz", HERTZ)] {

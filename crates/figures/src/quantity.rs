@@ -38,7 +38,7 @@ pub enum Quantity {
     /// Number of the wave along the tube.
     Wave,
     /// (z - c t)/lambda
-    Phase,
+    Position,
     /// v_z/c
     AxialVelocity,
 }
@@ -117,7 +117,7 @@ impl Quantity {
             Self::StaticFriction => ("static friction", "*μ*_{s}"),
             Self::FlowRateMoment => ("second moment", "*χ_J*"),
             Self::Wave => return "number of the wave".to_owned(),
-            Self::Phase => ("position in the wave frame", "(*z* − *ct*)/*λ*"),
+            Self::Position => ("position in the wave frame", "(*z* − *ct*)/*λ*"),
             Self::AxialVelocity => ("axial velocity", "*v_z*/*c*"),
         };
         let per_unit = match self {

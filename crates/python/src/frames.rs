@@ -78,7 +78,7 @@ fn chosen<T: Copy>(option: &str, choices: &[choice::Choice<T>], name: &str) -> P
 
 /// A picture of a run as it stands: PNG, or SVG where `vector` is true.
 #[pyfunction]
-#[pyo3(signature = (run, *, view, colour, range, wall, place, phase, waves, width, paper, bare, vector))]
+#[pyo3(signature = (run, *, view, colour, range, wall, place, position, waves, width, paper, bare, vector))]
 #[allow(
     clippy::too_many_arguments,
     reason = "the options of `peristalsis render`"
@@ -91,7 +91,7 @@ pub(crate) fn render<'py>(
     range: Option<(f64, f64)>,
     wall: &str,
     place: Option<f64>,
-    phase: Option<f64>,
+    position: Option<f64>,
     waves: f64,
     width: Option<u32>,
     paper: &str,
@@ -115,14 +115,14 @@ pub(crate) fn render<'py>(
             "view = {view:?} is not possible; there are {known}"
         )));
     }
-    if (place.is_some() || phase.is_some()) && view != "section" {
+    if (place.is_some() || position.is_some()) && view != "section" {
         return Err(PyValueError::new_err(
-            "place and phase are those of view = \"section\"",
+            "place and position are those of view = \"section\"",
         ));
     }
     let look = |middle: f64| {
-        let aspect = match (view.as_str(), phase) {
-            ("section", Some(phase)) => Aspect::Section(Place::Phase(phase)),
+        let aspect = match (view.as_str(), position) {
+            ("section", Some(position)) => Aspect::Section(Place::Position(position)),
             ("section", None) => Aspect::Section(Place::At(place.unwrap_or(middle))),
             _ => Aspect::Side,
         };

@@ -246,7 +246,7 @@ impl Newtonian {
     ///
     /// Parameters
     /// ----------
-    /// phase : ndarray
+    /// position : ndarray
     ///     x = (z - c t)/lambda, shape (n,), float64: the belly is at 1/4, the throat at 3/4.
     ///
     /// Returns
@@ -263,16 +263,16 @@ impl Newtonian {
     fn wall_radius<'py>(
         &self,
         py: Python<'py>,
-        phase: PyReadonlyArray1<'py, f64>,
+        position: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        along(py, &phase, |phase| self.flow.wall_radius(phase))
+        along(py, &position, |position| self.flow.wall_radius(position))
     }
 
     /// Pressure along the wave less that at x = 0 [8 mu c lambda/a^2].
     ///
     /// Parameters
     /// ----------
-    /// phase : ndarray
+    /// position : ndarray
     ///     x = (z - c t)/lambda, shape (n,), float64.
     ///
     /// Returns
@@ -289,9 +289,9 @@ impl Newtonian {
     fn pressure_along_wave<'py>(
         &self,
         py: Python<'py>,
-        phase: PyReadonlyArray1<'py, f64>,
+        position: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        along(py, &phase, |phase| self.flow.pressure_along_wave(phase))
+        along(py, &position, |position| self.flow.pressure_along_wave(position))
     }
 
     /// Axial and radial velocity and stream function in the laboratory, point by point; `field` of the module broadcasts.
@@ -300,7 +300,7 @@ impl Newtonian {
     /// ----------
     /// radius : ndarray
     ///     r [a], shape (n,), float64.
-    /// phase : ndarray
+    /// position : ndarray
     ///     x = (z - c t)/lambda, shape (n,), float64.
     ///
     /// Returns
@@ -319,11 +319,11 @@ impl Newtonian {
         &self,
         py: Python<'py>,
         radius: PyReadonlyArray1<'py, f64>,
-        phase: PyReadonlyArray1<'py, f64>,
+        position: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<[Bound<'py, PyArray1<f64>>; 3]> {
-        let (radius, phase) = (radius.as_slice()?, phase.as_slice()?);
+        let (radius, position) = (radius.as_slice()?, position.as_slice()?);
         let each = |value: &dyn Fn(f64, f64) -> f64| {
-            let values = radius.iter().zip(phase).map(|(&r, &x)| value(r, x));
+            let values = radius.iter().zip(position).map(|(&r, &x)| value(r, x));
             PyArray1::from_iter(py, values)
         };
         Ok([
@@ -334,14 +334,14 @@ impl Newtonian {
     }
 }
 
-/// A quantity at each phase.
+/// A quantity at each position.
 fn along<'py>(
     py: Python<'py>,
-    phase: &PyReadonlyArray1<'py, f64>,
+    position: &PyReadonlyArray1<'py, f64>,
     quantity: impl Fn(f64) -> f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let phase = phase.as_slice()?;
-    Ok(PyArray1::from_iter(py, phase.iter().copied().map(quantity)))
+    let position = position.as_slice()?;
+    Ok(PyArray1::from_iter(py, position.iter().copied().map(quantity)))
 }
 
 /// Amplitude ratio from which on a bolus is trapped at a pressure rise.

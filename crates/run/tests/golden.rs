@@ -102,7 +102,7 @@ const CASES: &[(&str, &str, &str)] = &[
          drive.schedule={form='ramp',parameter='width',from=3.0,to=2.6,end=1.5}",
     ),
     (
-        "smooth grains in the elastic tube",
+        "frictionless grains in the elastic tube",
         "frictional",
         "tube.waves=2 grains.number=100 run.periods=0.1 contact.static_friction=0 \
          contact.kinetic_friction=0 initial.state=rest",

@@ -154,7 +154,7 @@ fn grains_that_flow_against_the_wave_are_blue() {
     let (red, blue) = colours(&picture(&run, look(400)));
     assert!(blue > 500 && red == 0, "{red} red and {blue} blue pixels");
     let section = Look {
-        aspect: Aspect::Section(Place::Phase(0.25)),
+        aspect: Aspect::Section(Place::Position(0.25)),
         ..look(120)
     };
     let section = picture(&run, section);
@@ -173,7 +173,7 @@ fn every_field_colours_the_grains_of_a_run_that_has_it() {
         Field::Diameter,
         Field::AxialDisplacement,
         Field::AngularVelocity,
-        Field::Phase,
+        Field::Position,
         Field::Coordination,
         Field::Pressure,
     ] {
@@ -386,7 +386,7 @@ fn contacts_are_drawn_with_a_bar_of_their_forces_and_in_a_section_only_its_own()
     (0..20).for_each(|_| run.advance().map(drop).unwrap());
     let throat = run.simulation().wall().throat();
     let of = |wall: WallLook, contacts: bool| Look {
-        aspect: Aspect::Section(Place::Phase(throat)),
+        aspect: Aspect::Section(Place::Position(throat)),
         wall,
         contacts,
         ..look(300)

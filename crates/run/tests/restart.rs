@@ -16,7 +16,7 @@ const NO_FRICTION: &str = "contact.static_friction=0 contact.kinetic_friction=0"
 
 /// Preset and settings of one model each.
 fn models() -> Vec<(&'static str, String)> {
-    // The preset as it is: equal smooth grains, in the kernel made for them; and pumped against a pressure.
+    // The preset as it is: equal frictionless grains, in the kernel made for them; and pumped against a pressure.
     let against = "drive.body_force=-0.003 drive.waveform=roller";
     let mut models = vec![
         ("frictionless", STRAIN.to_owned()),

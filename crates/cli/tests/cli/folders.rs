@@ -47,8 +47,8 @@ fn nested_relative_folders_are_made_and_filled() {
         "the same, clear bore, φ = b/(a − d/2)",
     ];
     assert_labels(&place.path("a/b/c/flow.svg"), &flow);
-    let phase = "position in the wave frame, (z − ct)/λ";
-    let profile = ["r/d", "n1 d", "vz/c", "Tg/mc2", "(d)", phase];
+    let position = "position in the wave frame, (z − ct)/λ";
+    let profile = ["r/d", "n1 d", "vz/c", "Tg/mc2", "(d)", position];
     assert_labels(&place.path("a/b/c/profile.svg"), &profile);
 }
 

@@ -20,7 +20,7 @@ fn a_finished_run_is_drawn_from_every_side() {
     place
         .does("render results --width 300")
         .shows(&["300 x ", "results/tube-side.png"]);
-    let section = "render results --view section --phase 0.25 --width 64 --bare --out section.png";
+    let section = "render results --view section --position 0.25 --width 64 --bare --out section.png";
     place.does(section).shows(&["64 x 64 pixels: section.png"]);
     for options in [
         "--view space-time",

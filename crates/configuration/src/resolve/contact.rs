@@ -34,7 +34,7 @@ pub(super) fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<Co
         return context.refuse(
             ProblemKind::Inconsistent,
             &["contact.rolling_friction", "contact.static_friction"],
-            "contact.rolling_friction needs friction: smooth grains do not rotate".into(),
+            "contact.rolling_friction needs friction: frictionless grains do not rotate".into(),
             "give contact.static_friction, or contact.rolling_friction = 0".into(),
         );
     }

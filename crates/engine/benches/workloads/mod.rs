@@ -139,7 +139,7 @@ const FINE: Lattice = lattice(24, 26, 10, 10.0);
 
 const COARSE: Lattice = lattice(12, 14, 10, 10.0);
 
-/// Equal smooth grains with linear contacts in a prescribed tube.
+/// Equal frictionless grains with linear contacts in a prescribed tube.
 fn strain_controlled(
     lattice: Lattice,
     volume_fraction: f64,

@@ -161,7 +161,7 @@ fn panels() -> Drawn {
     let x = spaced(0.0, 1.0, 80);
     let panels = [0.4, 0.9, 0.2, 0.6].map(|height| {
         let y = map(&x, |x| height * libm::sin(TAU * x) * 0.3);
-        panel(Quantity::Phase, Quantity::AxialVelocity)
+        panel(Quantity::Position, Quantity::AxialVelocity)
             .title(&format!("*A* = {height}"))
             .x_range(0.0..=1.0)
             .with(Line::new("reference kernel", &x, &y).series(5).weight(2.2))
@@ -247,8 +247,8 @@ fn profile() -> Drawn {
     let radius = map(&wave, |wave| 3.5 + 1.1 * wave);
     let velocity = map(&wave, |wave| (0.15 - 0.42 * wave).max(0.0));
     let (rest, top) = (vec![0.0; 51], vec![5.0; 51]);
-    let phase = Quantity::Phase.label(Units::Linear);
-    let panel = |label| ChartPanel::new(&phase, label).x_range(0.0..=1.0);
+    let position = Quantity::Position.label(Units::Linear);
+    let panel = |label| ChartPanel::new(&position, label).x_range(0.0..=1.0);
     let tube = panel("*r*/*d*")
         .y_range(0.0..=5.0)
         .with(Band::new("", &x, &radius, &top).tint(Tint::Grey))

@@ -30,7 +30,8 @@ pub enum DissipationForm {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct ViscoelasticHertz {
-    /// Young's modulus Y of the Hertz law, f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - A sqrt(xi) v_n).
+    /// Young's modulus Y of the Hertz law, f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - B sqrt(xi) v_n); B is 3 A/2,
+    /// or A where dissipation_form is "printed".
     #[schemars(extend("x-unit" = "m d^-1 t^-2", "exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub young_modulus: f64,
     /// Poisson's ratio nu of the Hertz law.

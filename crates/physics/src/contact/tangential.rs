@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{Contact, TangentialForce, TangentialLaw};
 use crate::real::{Real, Vector};
 
-/// Smooth grains: no force in the plane of contact, no memory, no rotation.
+/// Frictionless grains: no force in the plane of contact, no memory, no rotation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frictionless;
 

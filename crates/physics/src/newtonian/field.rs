@@ -6,18 +6,18 @@ use std::f64::consts::TAU;
 impl NewtonianPeristalsis {
     /// Axial velocity in the laboratory, u = 2 (q + h^2)/h^4 (h^2 - r^2), in c, positive along the wave.
     ///
-    /// `radius` r in a, 0 <= r <= h(x); `phase` x in wavelengths. Zero at the wall, which moves only radially.
+    /// `radius` r in a, 0 <= r <= h(x); `position` x in wavelengths. Zero at the wall, which moves only radially.
     /// Undefined in the closed throat at phi = 1.
-    pub fn axial_velocity(&self, radius: f64, phase: f64) -> f64 {
-        let wall = self.wall_radius(phase);
-        -2.0 * self.pressure_gradient(phase) * (wall * wall - radius * radius)
+    pub fn axial_velocity(&self, radius: f64, position: f64) -> f64 {
+        let wall = self.wall_radius(position);
+        -2.0 * self.pressure_gradient(position) * (wall * wall - radius * radius)
     }
 
     /// Axial velocity in the wave frame, u - c, in c: negative where the fluid lags the wave.
     ///
     /// Arguments as in [`axial_velocity`](Self::axial_velocity). -1 at the wall.
-    pub fn wave_frame_velocity(&self, radius: f64, phase: f64) -> f64 {
-        self.axial_velocity(radius, phase) - 1.0
+    pub fn wave_frame_velocity(&self, radius: f64, position: f64) -> f64 {
+        self.axial_velocity(radius, position) - 1.0
     }
 
     /// Radial velocity, the same in both frames, in c a/lambda, positive outward.
@@ -26,10 +26,10 @@ impl NewtonianPeristalsis {
     ///
     /// At the wall it is the wall's own velocity, dh/dt = -h'. Arguments as in
     /// [`axial_velocity`](Self::axial_velocity).
-    pub fn radial_velocity(&self, radius: f64, phase: f64) -> f64 {
-        let wall = self.wall_radius(phase);
+    pub fn radial_velocity(&self, radius: f64, position: f64) -> f64 {
+        let wall = self.wall_radius(position);
         let area = wall * wall;
-        let area_slope = 2.0 * wall * self.amplitude_ratio * TAU * libm::cos(TAU * phase);
+        let area_slope = 2.0 * wall * self.amplitude_ratio * TAU * libm::cos(TAU * position);
         let section = radius * radius / area;
         let lead = 1.0 + self.wave_frame_flow_rate() / area;
         -area_slope * (radius / area) * (1.0 - 0.5 * section - lead * (1.0 - section))
@@ -41,8 +41,8 @@ impl NewtonianPeristalsis {
     ///
     /// Zero on the axis, q/2 at the wall; constant along the paths of the fluid, because the flow is steady in this
     /// frame. Arguments as in [`axial_velocity`](Self::axial_velocity).
-    pub fn stream_function(&self, radius: f64, phase: f64) -> f64 {
-        let wall = self.wall_radius(phase);
+    pub fn stream_function(&self, radius: f64, position: f64) -> f64 {
+        let wall = self.wall_radius(position);
         let area = wall * wall;
         let section = radius * radius / area;
         (self.wave_frame_flow_rate() + area) * (section - 0.5 * section * section)
@@ -56,14 +56,14 @@ pub(super) mod pathline {
 
     use super::NewtonianPeristalsis;
 
-    fn velocity(flow: &NewtonianPeristalsis, [phase, radius]: [f64; 2]) -> [f64; 2] {
+    fn velocity(flow: &NewtonianPeristalsis, [position, radius]: [f64; 2]) -> [f64; 2] {
         [
-            flow.wave_frame_velocity(radius, phase),
-            flow.radial_velocity(radius, phase),
+            flow.wave_frame_velocity(radius, position),
+            flow.radial_velocity(radius, position),
         ]
     }
 
-    /// One Runge-Kutta step (order 4) of a particle at [phase, radius] in the wave frame.
+    /// One Runge-Kutta step (order 4) of a particle at [position, radius] in the wave frame.
     pub(in super::super) fn advance(
         flow: &NewtonianPeristalsis,
         start: [f64; 2],
@@ -109,18 +109,18 @@ mod tests {
         fn the_field_is_that_of_its_stream_function(
             ratio in 0.0..0.8_f64,
             pressure in -3.0..3.0_f64,
-            phase in 0.0..1.0_f64,
+            position in 0.0..1.0_f64,
             fraction in 0.05..0.95_f64,
         ) {
             let flow = flow(ratio, pressure);
-            let radius = fraction * flow.wall_radius(phase);
+            let radius = fraction * flow.wall_radius(position);
             let step = 1e-5;
-            let along_radius = (flow.stream_function(radius + step, phase)
-                - flow.stream_function(radius - step, phase)) / (2.0 * step);
-            let along_axis = (flow.stream_function(radius, phase + step)
-                - flow.stream_function(radius, phase - step)) / (2.0 * step);
-            let axial = flow.wave_frame_velocity(radius, phase);
-            let radial = flow.radial_velocity(radius, phase);
+            let along_radius = (flow.stream_function(radius + step, position)
+                - flow.stream_function(radius - step, position)) / (2.0 * step);
+            let along_axis = (flow.stream_function(radius, position + step)
+                - flow.stream_function(radius, position - step)) / (2.0 * step);
+            let axial = flow.wave_frame_velocity(radius, position);
+            let radial = flow.radial_velocity(radius, position);
             let scale = 1.0 + axial.abs() + radial.abs();
             prop_assert!((along_radius / radius - axial).abs() < 1e-5 * scale);
             prop_assert!((-along_axis / radius - radial).abs() < 1e-5 * scale);
@@ -130,17 +130,17 @@ mod tests {
         fn the_wall_moves_only_radially_and_takes_the_fluid_along(
             ratio in 0.0..0.9_f64,
             pressure in -3.0..3.0_f64,
-            phase in 0.0..1.0_f64,
+            position in 0.0..1.0_f64,
         ) {
             let flow = flow(ratio, pressure);
-            let wall = flow.wall_radius(phase);
-            prop_assert!(flow.axial_velocity(wall, phase).abs() < 1e-12);
-            let wall_velocity = -ratio * TAU * libm::cos(TAU * phase);
-            prop_assert!((flow.radial_velocity(wall, phase) - wall_velocity).abs() < 1e-12);
-            let difference = flow.stream_function(wall, phase) - 0.5 * flow.wave_frame_flow_rate();
+            let wall = flow.wall_radius(position);
+            prop_assert!(flow.axial_velocity(wall, position).abs() < 1e-12);
+            let wall_velocity = -ratio * TAU * libm::cos(TAU * position);
+            prop_assert!((flow.radial_velocity(wall, position) - wall_velocity).abs() < 1e-12);
+            let difference = flow.stream_function(wall, position) - 0.5 * flow.wave_frame_flow_rate();
             prop_assert!(difference.abs() < 1e-13);
-            prop_assert_eq!(flow.stream_function(0.0, phase), 0.0);
-            prop_assert_eq!(flow.radial_velocity(0.0, phase), 0.0);
+            prop_assert_eq!(flow.stream_function(0.0, position), 0.0);
+            prop_assert_eq!(flow.radial_velocity(0.0, position), 0.0);
         }
     }
 

@@ -8,7 +8,7 @@
 //!
 //! and the flow rate of the wave frame, q, is the same at every section: G = -(q + h^2)/h^4.
 //!
-//! Units. Radial lengths: mean radius a. Axial lengths: wavelength lambda, so that `phase` x = (z - c t)/lambda counts
+//! Units. Radial lengths: mean radius a. Axial lengths: wavelength lambda, so that `position` x = (z - c t)/lambda counts
 //! wavelengths along the wave; the belly is at x = 1/4, the throat at x = 3/4. Velocities: wave speed c (radial ones
 //! c a/lambda). Times: period lambda/c. Flow rates: pi a^2 c. Pressures: 8 mu c lambda/a^2. Stream functions: c a^2.
 //!
@@ -142,9 +142,9 @@ impl NewtonianPeristalsis {
         -(open * open + self.pressure * open * open * open * open.sqrt()) / self.fourth_moment()
     }
 
-    /// Flow rate through the section at `phase` in the laboratory at one instant, q + h^2, in pi a^2 c.
-    pub fn instantaneous_flow_rate(&self, phase: f64) -> f64 {
-        let radius = self.wall_radius(phase);
+    /// Flow rate through the section at `position` in the laboratory at one instant, q + h^2, in pi a^2 c.
+    pub fn instantaneous_flow_rate(&self, position: f64) -> f64 {
+        let radius = self.wall_radius(position);
         self.wave_frame_flow_rate() + radius * radius
     }
 
@@ -164,25 +164,25 @@ impl NewtonianPeristalsis {
     }
 
     /// Radius of the wall, h(x) = 1 + phi sin(2 pi x), in a.
-    pub fn wall_radius(&self, phase: f64) -> f64 {
-        1.0 + self.amplitude_ratio * libm::sin(TAU * phase)
+    pub fn wall_radius(&self, position: f64) -> f64 {
+        1.0 + self.amplitude_ratio * libm::sin(TAU * position)
     }
 
-    /// Pressure gradient dP/dx = -(q + h^2)/h^4 at `phase`, in 8 mu c/a^2.
+    /// Pressure gradient dP/dx = -(q + h^2)/h^4 at `position`, in 8 mu c/a^2.
     ///
     /// Undefined (not a number, or infinite) in the closed throat at phi = 1.
-    pub fn pressure_gradient(&self, phase: f64) -> f64 {
-        let area = self.wall_radius(phase) * self.wall_radius(phase);
+    pub fn pressure_gradient(&self, position: f64) -> f64 {
+        let area = self.wall_radius(position) * self.wall_radius(position);
         -(self.wave_frame_flow_rate() + area) / (area * area)
     }
 
-    /// Pressure at `phase` less that at phase 0, in 8 mu c lambda/a^2; it rises by P at every wavelength.
+    /// Pressure at `position` less that at position 0, in 8 mu c lambda/a^2; it rises by P at every wavelength.
     ///
     /// The integrals of h^-2 and h^-4 are taken in closed form with Sommerfeld's substitution: from the belly at angle
     /// theta = 0, 1 + phi cos(theta) = (1 - phi^2)/(1 - phi cos(gamma)), which turns them into
     /// (1 - phi^2)^(1/2 - n) int (1 - phi cos(gamma))^(n - 1) dgamma. Range: phi < 1.
-    pub fn pressure_along_wave(&self, phase: f64) -> f64 {
-        self.pressure_from_belly(TAU * phase - 0.5 * PI) - self.pressure_from_belly(-0.5 * PI)
+    pub fn pressure_along_wave(&self, position: f64) -> f64 {
+        self.pressure_from_belly(TAU * position - 0.5 * PI) - self.pressure_from_belly(-0.5 * PI)
     }
 
     /// Pumping efficiency: useful power Q Dp over the power of the wall.
@@ -266,7 +266,7 @@ mod tests {
         NewtonianPeristalsis::new(amplitude_ratio, pressure).unwrap()
     }
 
-    /// Mean of a function of the phase over one wavelength, by the midpoint rule (exponentially exact for a period).
+    /// Mean of a function of the position over one wavelength, by the midpoint rule (exponentially exact for a period).
     fn wave_mean(function: impl Fn(f64) -> f64) -> f64 {
         let samples = 4000;
         let sum: f64 = (0..samples)
@@ -311,9 +311,9 @@ mod tests {
     fn mean_flow_rate_is_the_integral_of_the_velocity_field() {
         for (amplitude_ratio, pressure) in CASES {
             let flow = flow(amplitude_ratio, pressure);
-            let integral = wave_mean(|phase| {
-                let wall = flow.wall_radius(phase);
-                wall * wall * section_mean(|s| flow.axial_velocity(wall * s.sqrt(), phase))
+            let integral = wave_mean(|position| {
+                let wall = flow.wall_radius(position);
+                wall * wall * section_mean(|s| flow.axial_velocity(wall * s.sqrt(), position))
             });
             assert!(
                 (flow.flow_rate() - integral).abs() < 1e-12,
@@ -325,11 +325,11 @@ mod tests {
     #[test]
     fn the_flow_through_a_section_is_the_integral_of_its_velocity() {
         let flow = flow(0.6, 3.0);
-        for phase in [0.0, 0.25, 0.4, 0.75] {
-            let wall = flow.wall_radius(phase);
+        for position in [0.0, 0.25, 0.4, 0.75] {
+            let wall = flow.wall_radius(position);
             let integral =
-                wall * wall * section_mean(|s| flow.axial_velocity(wall * s.sqrt(), phase));
-            assert!((integral - flow.instantaneous_flow_rate(phase)).abs() < 1e-13);
+                wall * wall * section_mean(|s| flow.axial_velocity(wall * s.sqrt(), position));
+            assert!((integral - flow.instantaneous_flow_rate(position)).abs() < 1e-13);
         }
     }
 
@@ -337,7 +337,7 @@ mod tests {
     fn the_pressure_gradient_integrates_to_the_pressure_rise() {
         for (amplitude_ratio, pressure) in CASES {
             let flow = flow(amplitude_ratio, pressure);
-            let integral = wave_mean(|phase| flow.pressure_gradient(phase));
+            let integral = wave_mean(|position| flow.pressure_gradient(position));
             assert!(
                 (integral - pressure).abs() < 1e-10,
                 "{flow:?} gives {integral}"
@@ -410,13 +410,13 @@ mod tests {
         for (amplitude_ratio, pressure) in CASES {
             let flow = flow(amplitude_ratio, pressure);
             // mu (du/dr)^2 over the section, in 8 pi mu c^2: (1/8) int (du/dr)^2 d(r^2), with du/dr = 4 G r.
-            let dissipation = wave_mean(|phase| {
-                let wall = flow.wall_radius(phase);
+            let dissipation = wave_mean(|position| {
+                let wall = flow.wall_radius(position);
                 let shear = |s: f64| {
                     let radius = wall * s.sqrt();
                     let step = 1e-4;
-                    let difference = flow.axial_velocity(radius + step, phase)
-                        - flow.axial_velocity(radius - step, phase);
+                    let difference = flow.axial_velocity(radius + step, position)
+                        - flow.axial_velocity(radius - step, position);
                     difference / (2.0 * step)
                 };
                 wall * wall * section_mean(|s| shear(s) * shear(s)) / 8.0

@@ -174,25 +174,25 @@ mod tests {
     fn volume_and_flow_rate_of_the_layer_by_integration_of_its_velocity() {
         let flow = flow(0.5, 1.0);
         let layer = flow.reflux().unwrap();
-        let (phases, cells) = (400, 400);
+        let (positions, cells) = (400, 400);
         let (mut volume, mut transported) = (0.0, 0.0);
-        for i in 0..phases {
-            let phase = (f64::from(i) + 0.5) / f64::from(phases);
-            let wall = flow.wall_radius(phase);
+        for i in 0..positions {
+            let position = (f64::from(i) + 0.5) / f64::from(positions);
+            let wall = flow.wall_radius(position);
             let edge = sign_change(0.0, wall, |radius| {
-                layer.stream_function - flow.stream_function(radius, phase)
+                layer.stream_function - flow.stream_function(radius, position)
             });
             let inner = edge * edge;
             let cell = (wall * wall - inner) / f64::from(cells);
             for k in 0..cells {
                 let square: f64 = inner + (f64::from(k) + 0.5) * cell;
                 volume += cell;
-                transported += cell * flow.axial_velocity(square.sqrt(), phase);
+                transported += cell * flow.axial_velocity(square.sqrt(), position);
             }
         }
-        let total = f64::from(phases) * flow.mean_area();
+        let total = f64::from(positions) * flow.mean_area();
         assert!((layer.volume_fraction - volume / total).abs() < 1e-9);
-        assert!((layer.flow_rate - transported / f64::from(phases)).abs() < 1e-6);
+        assert!((layer.flow_rate - transported / f64::from(positions)).abs() < 1e-6);
         assert!(layer.flow_rate < 0.0);
     }
 

@@ -108,10 +108,10 @@ impl NewtonianPeristalsis {
         }
     }
 
-    /// Inner and outer radius of the trapped fluid at `phase`, in a; `None` where no fluid is trapped.
-    pub fn trapped_radii(&self, phase: f64) -> Option<(f64, f64)> {
+    /// Inner and outer radius of the trapped fluid at `position`, in a; `None` where no fluid is trapped.
+    pub fn trapped_radii(&self, position: f64) -> Option<(f64, f64)> {
         let shape = self.trapped_shape()?;
-        let (inner, outer) = self.trapped_areas(self.wall_radius(phase), shape);
+        let (inner, outer) = self.trapped_areas(self.wall_radius(position), shape);
         (outer > inner).then(|| (inner.sqrt(), outer.sqrt()))
     }
 
@@ -162,16 +162,16 @@ mod tests {
 
     /// Trapped volume fraction by counting cells of equal annular area with Psi above `edge`.
     fn counted_fraction(flow: &NewtonianPeristalsis, edge: f64) -> f64 {
-        let (phases, sections) = (600, 600);
+        let (positions, sections) = (600, 600);
         let mut trapped = 0.0;
         let mut total = 0.0;
-        for i in 0..phases {
-            let phase = (f64::from(i) + 0.5) / f64::from(phases);
-            let wall = flow.wall_radius(phase);
+        for i in 0..positions {
+            let position = (f64::from(i) + 0.5) / f64::from(positions);
+            let wall = flow.wall_radius(position);
             for k in 0..sections {
                 let section = (f64::from(k) + 0.5) / f64::from(sections);
                 total += wall * wall;
-                if flow.stream_function(wall * section.sqrt(), phase) > edge {
+                if flow.stream_function(wall * section.sqrt(), position) > edge {
                     trapped += wall * wall;
                 }
             }
@@ -288,10 +288,10 @@ mod tests {
             panic!("must trap");
         };
         for offset in [0.0, 0.5, -0.9] {
-            let phase = 0.25 + offset * bolus.half_length;
-            let (inner, outer) = flow.trapped_radii(phase).unwrap();
+            let position = 0.25 + offset * bolus.half_length;
+            let (inner, outer) = flow.trapped_radii(position).unwrap();
             assert_eq!(inner, 0.0);
-            assert!(flow.stream_function(outer, phase).abs() < 1e-13);
+            assert!(flow.stream_function(outer, position).abs() < 1e-13);
         }
         assert_eq!(flow.trapped_radii(0.25 + 1.01 * bolus.half_length), None);
         let end = 0.25 + bolus.half_length;

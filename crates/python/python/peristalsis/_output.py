@@ -134,7 +134,7 @@ class Output(Drive):
         range: tuple[float, float] | None = None,
         wall: str = "cut",
         place: float | None = None,
-        phase: float | None = None,
+        position: float | None = None,
         waves: float = 2.0,
         width: int | None = None,
         paper: str = "light",
@@ -150,12 +150,12 @@ class Output(Drive):
             From the side; cut across; or the flow rate of each wave against time.
         colour : str
             What colours the grains: ``"axial-velocity"``, ``"speed"``, ``"diameter"``, ``"axial-displacement"``,
-            ``"angular-velocity"``, ``"phase"``, ``"coordination"``, ``"pressure"``.
+            ``"angular-velocity"``, ``"position"``, ``"coordination"``, ``"pressure"``.
         range : (float, float), optional
             Values of the first and the last colour.
         wall : {"cut", "glass", "none"}
             How the wall looks from the side.
-        place, phase : float, optional
+        place, position : float, optional
             Where a section is: z [d], or (z - c t)/lambda; the middle of the tube by default.
         waves : float
             Wavelengths that a side view shows at most.
@@ -182,7 +182,7 @@ class Output(Drive):
         if path is not None and Path(path).suffix.lower() not in endings:
             raise ValueError(f"{path}: a picture is {' or '.join(endings)}")
         options: dict[str, Any] = {
-            "view": view, "colour": colour, "range": range, "wall": wall, "place": place, "phase": phase,
+            "view": view, "colour": colour, "range": range, "wall": wall, "place": place, "position": position,
             "waves": waves, "width": width, "paper": paper, "bare": bare,
         }
         picture = Picture(_core.render(self._run, **options, vector=False))

@@ -57,7 +57,7 @@ def flow_rate_ratio(
 
 
 def field(
-    flow: Newtonian, radius: npt.ArrayLike, phase: npt.ArrayLike
+    flow: Newtonian, radius: npt.ArrayLike, position: npt.ArrayLike
 ) -> tuple[Array, Array, Array]:
     """Axial velocity, radial velocity and stream function in the laboratory.
 
@@ -65,7 +65,7 @@ def field(
     ----------
     flow : Newtonian
         The flow.
-    radius, phase : array_like
+    radius, position : array_like
         r [a] and x = (z - c t)/lambda, broadcast against each other.
 
     Returns
@@ -81,7 +81,7 @@ def field(
     (2, 2)
     """
     r, x = np.broadcast_arrays(
-        np.asarray(radius, dtype=np.float64), np.asarray(phase, dtype=np.float64)
+        np.asarray(radius, dtype=np.float64), np.asarray(position, dtype=np.float64)
     )
     axial, radial, stream = flow.field(np.ascontiguousarray(r).ravel(), np.ascontiguousarray(x).ravel())
     return axial.reshape(r.shape), radial.reshape(r.shape), stream.reshape(r.shape)

@@ -87,7 +87,7 @@ fn overview(report: &Report) -> ReportTable {
     }
     let head = ["claim", "verdict"].into_iter();
     let head = head.chain(walls.iter().map(|tally| tally.wall));
-    ReportTable::new("", head.chain(["the number", "again"]), rows)
+    ReportTable::new("", head.chain(["the number", "command"]), rows)
 }
 
 /// A number with its name, its error and the value of the source.

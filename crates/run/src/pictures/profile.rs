@@ -36,7 +36,7 @@ fn column(bins: &[ProfileBin], value: impl Fn(&ProfileBin) -> f64) -> Vec<f64> {
 }
 
 fn panel(label_of_value: &str) -> ChartPanel {
-    ChartPanel::new(&label(Quantity::Phase), label_of_value).x_range(0.0..=1.0)
+    ChartPanel::new(&label(Quantity::Position), label_of_value).x_range(0.0..=1.0)
 }
 
 /// Profiles along the wave at rest: the tube, density, axial velocity and granular temperature, and stress on the wall where

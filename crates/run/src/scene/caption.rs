@@ -45,7 +45,7 @@ impl Caption {
             Aspect::Section(place) => {
                 let words = match place {
                     Place::At(z) => format!("*z* = {z:.1} *d*"),
-                    Place::Phase(phase) => format!("phase {phase:.2}"),
+                    Place::Position(position) => format!("(*z* \u{2212} *ct*)/*λ* = {position:.2}"),
                 };
                 (words, 2.0 * (scene.radius + MARGIN))
             }
@@ -92,9 +92,9 @@ fn marks(scene: &PictureScene, frame: &Frame) -> Vec<PlaceMark> {
     let heading = scene.wall.heading();
     let throat = scene.wall.throat();
     let mut marks = Vec::new();
-    for (phase, label) in [(throat, "throat"), (throat + 0.5, "belly")] {
-        // z of the picture, along the wave, is lambda (phase + cycles) + a whole number of lambda - shift.
-        let along = wavelength * (phase + cycles(frame)) - heading * scene.shift(cycles(frame));
+    for (position, label) in [(throat, "throat"), (throat + 0.5, "belly")] {
+        // z of the picture, along the wave, is lambda (position + cycles) + a whole number of lambda - shift.
+        let along = wavelength * (position + cycles(frame)) - heading * scene.shift(cycles(frame));
         let from_left = along + if heading < 0.0 { scene.shown } else { 0.0 };
         let mut along = from_left.rem_euclid(wavelength);
         while along <= scene.shown {

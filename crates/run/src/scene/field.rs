@@ -24,7 +24,7 @@ pub enum Field {
     /// |omega| d_i/(2 c), the surface's speed by rotation over the speed of the wave.
     AngularVelocity,
     /// (z - c t)/lambda with z along the wave, folded to \[0, 1).
-    Phase,
+    Position,
     /// Spheres that a grain touches, those of the wall included.
     Coordination,
     /// Mean normal stress from the normal forces of its contacts, sum f_n r/(3 V_i), r the distance from its centre to the contact.
@@ -92,7 +92,7 @@ impl Coloured {
             Field::Diameter => "diameter [*d*]".to_owned(),
             Field::AxialDisplacement => "displacement along the wave, Δ*z*/*λ*".to_owned(),
             Field::AngularVelocity => format!("speed of rotation, {}", per("½|*ω*|*d_i*")),
-            Field::Phase => "phase of the wave, (*z* \u{2212} *ct*)/*λ*".to_owned(),
+            Field::Position => "position in the wave frame, (*z* \u{2212} *ct*)/*λ*".to_owned(),
             Field::Coordination => "contacts of a grain".to_owned(),
             Field::Pressure => format!("pressure [{}]", units.pressure()),
         };
@@ -152,7 +152,7 @@ impl Coloured {
                 let reach = periods.abs().ceil().max(1.0);
                 (-reach, reach)
             }
-            Field::Phase => (0.0, 1.0),
+            Field::Position => (0.0, 1.0),
             Field::Coordination => (0.0, MOST_CONTACTS),
             Field::Pressure if at(COVERED) > 0.0 => (0.0, at(COVERED)),
             Field::Pressure => (0.0, self.usual_pressure),
@@ -164,7 +164,7 @@ impl Coloured {
         let (least, largest) = range.unwrap_or(self.range);
         let palette = match self.field {
             Field::AxialVelocity | Field::AxialDisplacement => Palette::Diverging,
-            Field::Phase => Palette::Cyclic,
+            Field::Position => Palette::Cyclic,
             _ => Palette::Sequential,
         };
         ColourScale::new(&self.label, least, largest)
@@ -200,7 +200,7 @@ impl Coloured {
                 let turning = turning.map_or(f64::NAN, |turning| size(turning[it]));
                 0.5 * turning * frame.diameter[it] / speed
             }),
-            Field::Phase => of_grains(&|it| {
+            Field::Position => of_grains(&|it| {
                 (heading * frame.position[it][2] / wavelength - cycles(frame)).rem_euclid(1.0)
             }),
             Field::Coordination => coordination(frame),

@@ -34,8 +34,8 @@ pub enum Aspect {
 pub enum Place {
     /// At z \[d\].
     At(f64),
-    /// At a phase of the wave, (z - c t)/lambda with z along the wave, so that the cut moves with it.
-    Phase(f64),
+    /// At a position in the wave frame, (z - c t)/lambda with z along the wave, so that the cut moves with it.
+    Position(f64),
 }
 
 /// How the wall looks from the side.

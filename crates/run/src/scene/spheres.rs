@@ -89,7 +89,7 @@ impl PictureScene {
             (Aspect::Side, Eye::Laboratory) => 0.0,
             (Aspect::Side, Eye::Wave) => wave * cycles,
             (Aspect::Section(Place::At(z)), _) => z - middle,
-            (Aspect::Section(Place::Phase(phase)), _) => wave * (phase + cycles) - middle,
+            (Aspect::Section(Place::Position(position)), _) => wave * (position + cycles) - middle,
         }
     }
 

@@ -31,8 +31,10 @@ fn page() -> String {
          Units are d, m and t; `1` is a pure number. \"Late\" is the last part of a run. A missing number is `null`.\n\n\
          ## The outcome of a run\n\n\
          The rows of a study have these columns, besides `identity`, `replicate` and one for each \
-         axis, named by its key. `summary.json` has them as keys, some \
-         in objects of their own: `throat_density` is `density` in `throat`.\n\n{head}{outcome}\n\
+         axis, named by its key. `summary.json` has the measured ones as keys, some in objects of their own: `throat_density` \
+         is `density` in `throat`, `pumping_efficiency` is `efficiency` in `pumping`. The times at other thresholds are its \
+         list `transition_times`. What describes the tube (`width` to `rings_per_wave`, `initial_state`) stands in \
+         `config.toml`.\n\n{head}{outcome}\n\
          ## The time series\n\n\
          Columns of friction, of an elastic wall, of a body force, of an open tube, of mixing (periodic tubes) and of segregation (several sizes) are there in runs that have these.\n\n{head}{}\n\
          ## The profile in the wave frame\n\n{head}{}\n\

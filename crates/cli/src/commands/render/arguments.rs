@@ -60,11 +60,11 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "WHAT", value_parser = one_of(EYES), default_value = "tube")]
     pub(crate) eye: Eye,
     /// Place z of a section, in d; the default is the middle of the tube.
-    #[arg(long, value_name = "Z", conflicts_with = "phase")]
+    #[arg(long, value_name = "Z", conflicts_with = "position")]
     pub(crate) place: Option<f64>,
-    /// Place of a section as a phase (z - c t)/lambda, which moves with the wave.
-    #[arg(long, value_name = "PHASE", allow_negative_numbers = true)]
-    pub(crate) phase: Option<f64>,
+    /// Place of a section as a position in the wave frame, (z - c t)/lambda: it moves with the wave.
+    #[arg(long, value_name = "POSITION", allow_negative_numbers = true)]
+    pub(crate) position: Option<f64>,
     /// Draw the contacts as lines, thick where the normal force is large, between smaller grains; not from a trajectory,
     /// which holds no forces.
     #[arg(long)]
@@ -125,8 +125,8 @@ const WIDTHS: [u32; 2] = [2400, 960];
 impl RenderArguments {
     /// How the tube is drawn; a section is at `middle` unless the arguments place it.
     pub(crate) fn look(&self, is_film: bool, middle: f64) -> Look {
-        let aspect = match (self.view, self.phase) {
-            (ViewName::Section, Some(phase)) => Aspect::Section(Place::Phase(phase)),
+        let aspect = match (self.view, self.position) {
+            (ViewName::Section, Some(position)) => Aspect::Section(Place::Position(position)),
             (ViewName::Section, None) => Aspect::Section(Place::At(self.place.unwrap_or(middle))),
             _ => Aspect::Side,
         };

@@ -97,7 +97,7 @@ fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
 /// Refuses what goes together with no picture.
 fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
     let is_film = format.film().is_some();
-    let is_placed = arguments.place.is_some() || arguments.phase.is_some();
+    let is_placed = arguments.place.is_some() || arguments.position.is_some();
     let (has_window, has_duration) = (arguments.window.is_some(), arguments.duration.is_some());
     let is_from_state = arguments.from == Some(Origin::State);
     let reads_file = matches!(arguments.from, None | Some(Origin::Trajectory));
@@ -109,7 +109,7 @@ fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
         ),
         (
             is_placed && arguments.view != ViewName::Section,
-            "--place and --phase are those of a section",
+            "--place and --position are those of a section",
             "add --view section",
         ),
         (

@@ -1,4 +1,4 @@
-//! The fast kernel for equal smooth grains in a tube with a prescribed wall.
+//! The fast kernel for equal frictionless grains in a tube with a prescribed wall.
 //!
 //! The grains are kept in the order of z, in a wide tube strip by strip along it. A grain's partners are then few places
 //! that follow one another, so that eight grains meet eight partners at a time without gathering: a list for each eight

@@ -59,7 +59,7 @@ impl Sorted {
             && Self::serves_tube(bodies, wall, parameters.skin)
     }
 
-    /// Whether it serves smooth grains in this tube.
+    /// Whether it serves frictionless grains in this tube.
     pub(super) fn serves_tube(bodies: &Bodies, wall: &Wall, skin: f64) -> bool {
         let Some(prescribed) = wall.prescribed() else {
             return false;

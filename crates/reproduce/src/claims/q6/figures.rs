@@ -1,4 +1,4 @@
-//! Figures of Q6: the flow against what might cause its turning back, and the momentum balance against the phase.
+//! Figures of Q6: the flow against what might cause its turning back, and the momentum balance against the position.
 
 use peristalsis_figures::chart::{Corner, Note};
 
@@ -63,7 +63,7 @@ pub(super) fn causes(draft: &mut Draft, samples: &Samples<'_>) -> Result<()> {
     draft.chart("cause-of-back-flow", values!(friction, tether, rate), chart)
 }
 
-/// Radius, velocities and forces against the phase, with and without friction; `None` where no profile is at hand.
+/// Radius, velocities and forces against the position in the wave frame, with and without friction; `None` where no profile is at hand.
 pub(super) fn balance(
     draft: &mut Draft,
     results: &StudyResults,
@@ -94,7 +94,7 @@ pub(super) fn balance(
     draft.chart("axial-balance", &[], chart)
 }
 
-/// Radius, velocities and forces against the phase of one run.
+/// Radius, velocities and forces against the position in the wave frame, of one run.
 fn column(friction: f64, wave_speed: f64, profile: &Table) -> Result<[ChartPanel; 3]> {
     let position = profile.reals("position")?;
     let scaled = |name: &str, factor: f64| -> Result<Vec<f64>> {
@@ -115,7 +115,7 @@ fn column(friction: f64, wave_speed: f64, profile: &Table) -> Result<[ChartPanel
                 .series(4)
                 .pattern(Pattern::Dashed),
         );
-    let mut forces = panel(&label(Axis::Phase), "force per length, 10^{3}*f*/*Yd*")
+    let mut forces = panel(&label(Axis::Position), "force per length, 10^{3}*f*/*Yd*")
         .with(Reference::horizontal(0.0));
     let kinds = [
         ("normal", "wall_normal_force"),

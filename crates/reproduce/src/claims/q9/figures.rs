@@ -106,7 +106,7 @@ fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>> {
     Ok(profiles)
 }
 
-/// Radius, pressure and shear against the phase of the wave, a column a pump; `None` where no profile is at hand.
+/// Radius, pressure and shear against the position in the wave frame, a column a pump; `None` where no profile is at hand.
 pub(super) fn on_the_wall(draft: &mut Draft, pumps: &[Pump<'_>]) -> Result<()> {
     let mut columns = Vec::new();
     for pump in pumps {
@@ -125,7 +125,7 @@ pub(super) fn on_the_wall(draft: &mut Draft, pumps: &[Pump<'_>]) -> Result<()> {
             let panel = match column {
                 "radius" => ChartPanel::new("", "radius, *R*/*d*").title(pump.model.name),
                 "wall_pressure" => ChartPanel::new("", &format!("pressure, *p*{unit}")),
-                _ => ChartPanel::new(&label(Axis::Phase), &format!("shear, *τ*{unit}"))
+                _ => ChartPanel::new(&label(Axis::Position), &format!("shear, *τ*{unit}"))
                     .with(Reference::horizontal(0.0)),
             };
             panels.push(with_profiles(panel, profiles, column)?);
@@ -138,7 +138,7 @@ pub(super) fn on_the_wall(draft: &mut Draft, pumps: &[Pump<'_>]) -> Result<()> {
     draft.chart("pump-wall", &[], chart)
 }
 
-/// A column of each profile against the phase, with bands where it has errors.
+/// A column of each profile against the position in the wave frame, with bands where it has errors.
 fn with_profiles(
     panel: ChartPanel,
     profiles: &[(&str, Table)],

@@ -71,7 +71,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut finding = PROSE.described(&[]);
     let mut rows = Vec::new();
     for means in Means::INTEGRATORS {
-        for (kernel, means) in [("fast", means), ("plain", means.plainly())] {
+        for (kernel, means) in [("fast", means), ("reference", means.by_reference())] {
             circumstances.go_on()?;
             let setting = format!("{}, {kernel} kernel", means.name());
             let inclines = SLOPES.map(|slope| Row::simulate(slope, means));
@@ -102,7 +102,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
 /// Without friction and with it: each has its own kernel.
 fn contacts() -> [(&'static str, ContactModel); 2] {
     let normal = Normal::Linear(spring(0.1));
-    [("smooth", None), ("rough", Some(FRICTION))]
+    [("frictionless", None), ("frictional", Some(FRICTION))]
         .map(|(name, friction)| (name, ContactModel::new(normal, friction)))
 }
 

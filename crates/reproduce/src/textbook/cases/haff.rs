@@ -117,8 +117,8 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         for replicate in 0..replicates {
             let course = experiment.gas.cool(
                 replicate,
-                // A state that is taken out and put back every few contacts is cheapest for the plain kernel.
-                Means::USUAL.plainly(),
+                // A state that is taken out and put back every few contacts is cheapest for the reference kernel.
+                Means::USUAL.by_reference(),
                 experiment.time_step,
                 [TIMES_TAU * tau, SAMPLES as f64],
                 circumstances,

@@ -111,7 +111,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     for height in [heights[0], heights[heights.len() - 1]] {
         let row = load(0.0, height, 1)?;
         let found = row.load.apparent / row.load.filling;
-        let setting = format!("smooth, {height} D");
+        let setting = format!("frictionless, {height} D");
         let check = Check::relative(
             "apparent mass over filling mass",
             &setting,
@@ -211,8 +211,8 @@ fn drawing(rows: &[Row], curves: &[(f64, f64)]) -> ChartFigure {
         });
         panel = panel.with(line.tint(Tint::Black).pattern(Pattern::Dashed));
     }
-    let smooth = [0.0].into_iter();
-    for (series, friction) in smooth.chain(FRICTIONS).enumerate() {
+    let frictionless = [0.0].into_iter();
+    for (series, friction) in frictionless.chain(FRICTIONS).enumerate() {
         let mine = rows.iter().filter(|row| row.column.friction == friction);
         let found = points(&format!("*μ* = {friction}"), mine, |row| {
             (row.load.filling, row.load.apparent)

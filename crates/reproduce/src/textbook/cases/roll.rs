@@ -44,7 +44,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let duration = DURATION * slip_time();
     let mut usual = Vec::new();
     for means in Means::INTEGRATORS {
-        for (kernel, means) in [("fast", means), ("plain", means.plainly())] {
+        for (kernel, means) in [("fast", means), ("reference", means.by_reference())] {
             circumstances.go_on()?;
             let course = THROW.simulate(means, TIME_STEP, duration)?;
             let setting = format!("{}, {kernel} kernel", means.name());

@@ -87,21 +87,21 @@ impl Trial {
         })
     }
 
-    /// The fast kernels against the plain one, with both integrators: largest difference of velocities and spins after the
+    /// The fast kernels against the reference kernel, with both integrators: largest difference of velocities and spins after the
     /// impact, over its speed.
     pub(super) fn kernels_agree(&self, setting: &str) -> Result<Check> {
         let mut largest = 0.0_f64;
         for means in Means::INTEGRATORS {
-            let (fast, plain) = (self.rebound(means)?, self.rebound(means.plainly())?);
+            let (fast, reference) = (self.rebound(means)?, self.rebound(means.by_reference())?);
             for i in 0..2 {
-                let apart = (fast.velocity[i] - plain.velocity[i]).length();
-                largest = largest.max(apart).max((fast.spin[i] - plain.spin[i]).abs());
+                let apart = (fast.velocity[i] - reference.velocity[i]).length();
+                largest = largest.max(apart).max((fast.spin[i] - reference.spin[i]).abs());
             }
         }
         let difference = largest / self.impact.relative_velocity().length();
-        let quantity = "fast kernels less plain kernel, over the speed";
+        let quantity = "fast kernels less reference kernel, over the speed";
         let check = Check::absolute(quantity, setting, 0.0, difference, KERNELS_AGREE);
-        Ok(check.by("the plain kernel"))
+        Ok(check.by("the reference kernel"))
     }
 }
 

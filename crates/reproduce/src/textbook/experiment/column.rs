@@ -36,7 +36,7 @@ const READINGS: u32 = 20;
 /// A filling of the tube.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Column {
-    /// mu of grains and wall; 0: both are smooth.
+    /// mu of grains and wall; 0: neither has friction.
     pub(crate) friction: f64,
     /// About \[D\], the width of the tube.
     pub(crate) height: f64,
@@ -93,7 +93,7 @@ impl Column {
             ..Means::USUAL.parameters(ContactModel::new(normal, friction), TIME_STEP, 0.3)
         };
         let (bodies, _) = pack(&packing, &wall, normal)?;
-        // Smooth grains may turn round the axis for ever, and grains roll on for long; neither changes a weight.
+        // Frictionless grains may turn round the axis for ever, and grains roll on for long; neither changes a weight.
         let mut simulation = Simulation::new(bodies, wall, parameters);
         let before = STARTS[1] + SUNK[0] / SINKING;
         simulation.advance((before / TIME_STEP) as u64)?;

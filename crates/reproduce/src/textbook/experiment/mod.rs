@@ -37,8 +37,8 @@ impl Means {
         },
     ];
 
-    /// The same integrator by the plain kernel.
-    pub(crate) fn plainly(self) -> Self {
+    /// The same integrator by the reference kernel.
+    pub(crate) fn by_reference(self) -> Self {
         Self {
             kernel: Kernel::Reference,
             ..self
