@@ -46,7 +46,12 @@ pub(crate) enum Failure {
     Run(#[from] RunError),
     /// A frame of a run's trajectory cannot be written.
     #[error("the run was stopped, since its trajectory cannot be written: {source}")]
-    Trajectory { folder: PathBuf, source: RunError },
+    Trajectory {
+        folder: PathBuf,
+        source: RunError,
+        /// Whether the state could be saved all the same.
+        is_saved: bool,
+    },
     /// What a run has found cannot be written.
     #[error("{source}")]
     Results { folder: RunFolder, source: RunError },
@@ -122,8 +127,12 @@ impl Failure {
                 source: RunError::Format(FormatError::NotATrajectory { .. }),
                 ..
             } => failed(FOREIGN_FRAMES),
-            Self::Trajectory { folder, .. } => failed(format!(
-                "nothing that was measured is lost: make room, then go on with: peristalsis run --resume {}",
+            Self::Trajectory { folder, is_saved, .. } => failed(format!(
+                "{}: make room, then go on with: peristalsis run --resume {}",
+                match is_saved {
+                    true => "nothing that was measured is lost",
+                    false => "the state could not be saved either, so that what came after the last one is computed again",
+                },
                 folder.display()
             )),
             Self::Results { folder, source: RunError::Format(_) } => failed(unwritten(folder)),

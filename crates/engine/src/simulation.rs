@@ -427,9 +427,18 @@ impl Simulation {
             pair_histories,
             wall_histories,
             general_histories,
-            sorting: self.sorted.as_ref().map(|sorted| sorted.sorting()),
+            sorting: self.sorting(),
             ends: self.ends(),
         }
+    }
+
+    /// The order of the sorted kernel, which has none any more where a grain has left all bounds: the run diverged.
+    fn sorting(&self) -> Option<Sorting> {
+        let sorting = self.sorted.as_ref()?.sorting();
+        let (bodies, wall) = (self.bodies(), self.wall());
+        let strips = Sorted::strips(bodies, wall, self.parameters.skin);
+        let is_order = sorting.check(bodies.grains, strips, wall.length()).is_ok();
+        is_order.then_some(sorting)
     }
 
     /// Goes on from a snapshot of a simulation with this wall and these parameters.

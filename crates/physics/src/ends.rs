@@ -48,7 +48,8 @@ pub struct Inlet {
     /// Velocity towards the outlet with which grains are put in.
     #[schemars(extend("x-unit" = "d t^-1", "minimum" = 0, "maximum" = 1e6))]
     pub velocity: f64,
-    /// How many of the grains wait outside at t = 0.
+    /// How many of the grains wait outside at t = 0. Those that are packed into the gap of 4 diameters between the ends wait
+    /// as well.
     #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 100_000_000))]
     pub waiting: u64,
 }

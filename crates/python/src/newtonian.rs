@@ -291,7 +291,9 @@ impl Newtonian {
         py: Python<'py>,
         position: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        along(py, &position, |position| self.flow.pressure_along_wave(position))
+        along(py, &position, |position| {
+            self.flow.pressure_along_wave(position)
+        })
     }
 
     /// Axial and radial velocity and stream function in the laboratory, point by point; `field` of the module broadcasts.
@@ -341,7 +343,10 @@ fn along<'py>(
     quantity: impl Fn(f64) -> f64,
 ) -> PyResult<Bound<'py, PyArray1<f64>>> {
     let position = position.as_slice()?;
-    Ok(PyArray1::from_iter(py, position.iter().copied().map(quantity)))
+    Ok(PyArray1::from_iter(
+        py,
+        position.iter().copied().map(quantity),
+    ))
 }
 
 /// Amplitude ratio from which on a bolus is trapped at a pressure rise.

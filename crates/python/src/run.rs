@@ -22,6 +22,9 @@ use crate::configuration::Configuration;
 use crate::error::{ConfigurationError, DivergedError, in_words, of_run};
 use crate::table::{Table, read_only};
 
+/// Time between two looks for a signal while grains are packed.
+const EACH_LOOK: Duration = Duration::from_millis(50);
+
 /// A simulation with what was measured of it, behind a lock that is fair: who looks at it while another thread advances
 /// it sees a whole step, and soon.
 #[pyclass(frozen, module = "peristalsis._core")]
@@ -98,8 +101,21 @@ impl Run {
     #[new]
     fn new(py: Python<'_>, configuration: &Configuration) -> PyResult<Self> {
         let configuration = configuration.inner.clone();
-        let run = py.detach(|| peristalsis_run::Run::new(configuration));
-        run.map(Self::of).map_err(of_run)
+        let raised = Mutex::new((Instant::now(), None));
+        // Packing asks often: a signal is looked for from time to time.
+        let stop = || {
+            let (looked, raised) = &mut *raised.lock();
+            if raised.is_none() && looked.elapsed() > EACH_LOOK {
+                *looked = Instant::now();
+                *raised = Python::attach(|py| py.check_signals()).err();
+            }
+            raised.is_some()
+        };
+        let run = py.detach(|| peristalsis_run::Run::new_unless(configuration, &stop));
+        match raised.into_inner().1 {
+            Some(error) => Err(error),
+            None => run.map(Self::of).map_err(of_run),
+        }
     }
 
     /// Puts grains where the caller wants them.
@@ -200,6 +216,13 @@ impl Run {
         let parameter = scheduled(name)?;
         self.look(py, |run| run.drive_to(parameter, value, periods))
             .map_err(of_run)
+    }
+
+    /// Whether a parameter of the drive could be led to a value.
+    fn check_drive(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<()> {
+        let parameter = scheduled(name)?;
+        let checked = self.look(py, |run| run.check_drive(parameter, value).map(drop));
+        checked.map_err(of_run)
     }
 
     /// Value of a parameter of the drive for the next step; `None` where there is no such parameter.

@@ -36,7 +36,14 @@ fn value_of(value: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
             .map(|(key, value)| Ok((key.extract::<String>()?, value_of(&value)?)));
         return Ok(toml::Value::Table(entries.collect::<PyResult<_>>()?));
     }
-    // NumPy's scalars: whole numbers say so by `__index__`.
+    // NumPy's scalars: truth values say so by their kind.
+    if let Ok(kind) = value.getattr("dtype").and_then(|it| it.getattr("kind"))
+        && !value.hasattr("__len__")?
+        && kind.eq("b")?
+    {
+        return Ok(toml::Value::Boolean(value.is_truthy()?));
+    }
+    // Whole numbers say so by `__index__`.
     if value.hasattr("__index__")? && !value.hasattr("__len__")? {
         let number = value.call_method0("__index__")?.extract()?;
         return Ok(toml::Value::Integer(number));

@@ -11,7 +11,7 @@ use peristalsis_formats::{FormatError, atomic, csv, parquet};
 use crate::error::RunError;
 use crate::pictures;
 use crate::run::Run;
-use crate::summary::Summary;
+use crate::summary::{Status, Summary};
 use crate::tables::{profile_table, timeseries_table, transit_table, waves_table};
 use crate::trajectory::Trajectory;
 
@@ -43,15 +43,6 @@ pub struct RunFolder {
     path: PathBuf,
     /// Held while this program works on the run, and given back by the system when it ends, however it does.
     lock: Option<Arc<File>>,
-}
-
-/// Which of the optional files are wanted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Written {
-    /// Tables as Parquet, figures, summary.
-    Standard,
-    /// The time series as CSV as well.
-    WithCsv,
 }
 
 impl RunFolder {
@@ -222,6 +213,25 @@ impl RunFolder {
         self.file(SUMMARY).is_file()
     }
 
+    /// The files that its run may leave besides figures.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let names = FILES.into_iter().chain(Trajectory::names());
+        names.map(|name| self.file(name))
+    }
+
+    /// Why the run in the folder diverged, if its summary says that it did.
+    pub fn divergence(&self) -> Option<String> {
+        let text = std::fs::read_to_string(self.file(SUMMARY)).ok()?;
+        let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
+        let diverged = serde_json::to_value(Status::Diverged).ok()?;
+        (summary["status"] == diverged).then(|| {
+            summary["message"]
+                .as_str()
+                .unwrap_or("it diverged")
+                .to_owned()
+        })
+    }
+
     /// Whether the folder has a saved state.
     pub fn has_state(&self) -> bool {
         self.file(STATE).is_file()
@@ -257,21 +267,29 @@ impl RunFolder {
         run.write_checkpoint(&self.file(STATE))
     }
 
-    /// Writes tables, state, summary and figures, and answers the files of figures; the summary after the tables, so that its
-    /// presence says they are there. A time series in CSV that is there is renewed.
+    /// Writes the time series as CSV: from now on [`RunFolder::finish`] renews it.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the file cannot be written; an older one stays.
+    pub fn write_csv(&self, run: &Run) -> Result<(), RunError> {
+        Ok(csv::write(
+            &self.file(TIMESERIES_CSV),
+            &timeseries_table(run)?,
+        )?)
+    }
+
+    /// Writes state, tables, summary and figures, and answers the files of figures: the state first, from which the others
+    /// can be made, and the summary after the tables, so that its presence says they are there. A time series in CSV that is
+    /// there is renewed.
     ///
     /// # Errors
     /// The first file that cannot be written or drawn.
-    pub fn finish(
-        &self,
-        run: &Run,
-        summary: &Summary,
-        written: Written,
-    ) -> Result<Vec<PathBuf>, RunError> {
+    pub fn finish(&self, run: &Run, summary: &Summary) -> Result<Vec<PathBuf>, RunError> {
+        self.save_state(run)?;
         let timeseries = timeseries_table(run)?;
         parquet::write(&self.file(TIMESERIES), &timeseries)?;
         let text = self.file(TIMESERIES_CSV);
-        if written == Written::WithCsv || text.exists() {
+        if text.exists() {
             csv::write(&text, &timeseries)?;
         }
         parquet::write(&self.file(PROFILE), &profile_table(run)?)?;
@@ -279,7 +297,6 @@ impl RunFolder {
         if let Some(transit) = transit_table(run)? {
             parquet::write(&self.file(TRANSIT), &transit)?;
         }
-        self.save_state(run)?;
         atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
         self.draw(run, summary)
     }

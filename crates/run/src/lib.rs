@@ -28,7 +28,7 @@ mod warnings;
 pub use assemble::{PlacedGrains, assemble, scheduled_wavelengths, walls};
 pub use error::RunError;
 pub use estimate::{Estimate, estimate, estimate_by, restitution_at_wave_speed};
-pub use folder::{RunFolder, Written, next_folder, read_state, write_state};
+pub use folder::{RunFolder, next_folder, read_state, write_state};
 pub use pace::Pace;
 pub use peristalsis_configuration::Configuration;
 pub use peristalsis_figures::{Drawing, Paper};

@@ -97,8 +97,8 @@ impl Recorder {
         let bins = configuration.observe.profile_bins as usize;
         self.samples_per_period == samples_per_period
             && self.wall_interval == wall_interval(each, samples_per_period)
-            // A run that diverged may have come to the end of an interval, and taken no sample there.
-            && (samples..=samples + 1).contains(&(simulation.step() / each))
+            // A run that diverged has taken no sample since, however often it was tried again.
+            && samples <= simulation.step() / each
             && self.averages.count() == samples / samples_per_period
             && self.samples.fits(1)
             && self.averages.fits(1)

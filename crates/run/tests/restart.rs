@@ -5,8 +5,8 @@
 mod common;
 
 use peristalsis_run::{
-    Run, RunError, RunFolder, Status, Summary, Written, profile_table, snapshot_table,
-    timeseries_table, waves_table,
+    Run, RunError, RunFolder, Status, Summary, profile_table, snapshot_table, timeseries_table,
+    waves_table,
 };
 
 const STRAIN: &str = "grains.number=30 tube.waves=2 run.periods=2 drive.width=2.3";
@@ -99,7 +99,7 @@ fn a_folder_goes_on_to_the_same_bits() {
         let folder = RunFolder::create(&through, &configuration).unwrap();
         let run = finish(Run::new(configuration.clone()).unwrap());
         let summary = Summary::of(&run, Status::Complete, None);
-        folder.finish(&run, &summary, Written::Standard).unwrap();
+        folder.finish(&run, &summary).unwrap();
 
         let folder = RunFolder::create(&stopped, &configuration).unwrap();
         let mut run = Run::new(configuration).unwrap();
@@ -112,7 +112,7 @@ fn a_folder_goes_on_to_the_same_bits() {
         assert_eq!(run.progress().samples, 3);
         let run = finish(run);
         let summary = Summary::of(&run, Status::Complete, None);
-        folder.finish(&run, &summary, Written::Standard).unwrap();
+        folder.finish(&run, &summary).unwrap();
 
         for name in ["timeseries.parquet", "profile.parquet", "waves.parquet"] {
             let [one, other] =

@@ -38,7 +38,7 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             estimate.number_density,
             match estimate.waiting_grains {
                 None | Some(0) => String::new(),
-                Some(waiting) => format!(", of which {waiting} wait outside the inlet"),
+                Some(waiting) => format!(", of which {waiting} and those between the ends wait"),
             }
         ),
         format!(

@@ -12,7 +12,7 @@ use peristalsis_run::estimate;
 use crate::arguments::ConfigurationArguments;
 use crate::commands::check::in_words as estimate_in_words;
 use crate::commands::schema::{SchemaArguments, show};
-use crate::commands::{print_report, rounded, say_if_replaced, significant};
+use crate::commands::{print_report, refuse_loss, rounded, say_if_replaced, significant};
 use crate::failure::{Failure, say};
 use crate::sources::{configuration, locate, name_and_text};
 use crate::stop::Stop;
@@ -46,6 +46,9 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
     }
     let _stop = Stop::watch()?;
     let sources = &arguments.configuration;
+    for path in arguments.write.iter().chain(&arguments.html) {
+        refuse_loss(path, sources.file.clone())?;
+    }
     let text = text_of_design(sources)?;
     let configuration = match &text {
         Some(text) => Configuration::from_toml("design", text)?,

@@ -17,6 +17,7 @@ pub(crate) mod validate;
 pub(crate) mod view;
 
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::mpsc;
 use std::time::Duration;
@@ -69,9 +70,24 @@ fn tell(is_quiet: bool, text: &str) {
 
 /// Says that a file which is about to be written replaces one. Every command that writes a file which its user names does
 /// so, and says so.
-fn say_if_replaced(path: &std::path::Path) {
+fn say_if_replaced(path: &Path) {
     if path.exists() {
         say(&format!("replaces {}", path.display()));
+    }
+}
+
+/// Refuses to write a file over one that must stay. Asked before anything is computed.
+fn refuse_loss(path: &Path, kept: impl IntoIterator<Item = PathBuf>) -> Result<(), Failure> {
+    let Ok(written) = path.canonicalize() else {
+        return Ok(());
+    };
+    let is_written = |kept: PathBuf| kept.canonicalize().is_ok_and(|kept| kept == written);
+    match kept.into_iter().any(is_written) {
+        true => Err(Failure::usage(
+            format!("{} is needed, and would be lost", path.display()),
+            "name another file to write",
+        )),
+        false => Ok(()),
     }
 }
 

@@ -67,4 +67,32 @@ fn a_design_that_is_wrong_is_refused_with_its_line_and_is_no_configuration() {
     place.write("hose.toml", HOSE);
     place.refuses("design hose.toml --duration 3", &["use --periods"]);
     place.refuses("design --preset frictional", &["prescribed wall"]);
+    place.refuses(
+        "design hose.toml --set tube.occlusion=0",
+        &["tube.occlusion = 0 is too small"],
+    );
+    for option in ["--write", "--html"] {
+        let call = format!("design hose.toml {option} hose.toml");
+        place.refuses(&call, &["hose.toml", "would be lost"]);
+    }
+    assert_eq!(
+        std::fs::read_to_string(place.path("hose.toml")).unwrap(),
+        HOSE
+    );
+}
+
+#[test]
+fn grains_that_the_back_pressure_would_push_away_do_not_settle() {
+    let place = Place::new();
+    place.write("hose.toml", HOSE);
+    for (pressure, state) in [(0, "settled"), (500, "rest")] {
+        let name = format!("pressed-{pressure}.toml");
+        let call = format!("design hose.toml drive.back_pressure={pressure} --write {name}");
+        place.does(&call);
+        let written = std::fs::read_to_string(place.path(&name)).unwrap();
+        assert!(
+            written.contains(&format!("state = \"{state}\"")),
+            "{written}"
+        );
+    }
 }

@@ -210,6 +210,9 @@ fn what_cannot_be_resumed() {
         &["no run that can be continued", "complete"],
     );
     assert_eq!(place.inventory(), before);
+    // A table that it lacks it still gets.
+    place.does("run --resume whole --csv");
+    assert!(place.path("whole/timeseries.csv").is_file());
 
     std::fs::remove_file(place.path("whole/state.checkpoint")).unwrap();
     place.refuses("run --resume whole", &["state.checkpoint"]);

@@ -83,11 +83,13 @@ fn a_diverging_run_names_step_and_grain_and_saves_its_state() {
     ] {
         assert!(place.path("results").join(name).is_file(), "{name}");
     }
-    // From the saved state it cannot go on either, and says so again.
+    // It would diverge again: that is said, and the state stays.
+    let before = place.inventory();
     place
         .call("run --resume results")
-        .expect_code(1)
-        .says(&["diverged at step "]);
+        .expect_code(2)
+        .says(&["holds no run that can be continued", "diverged at step "]);
+    assert!(place.inventory() == before);
 }
 
 #[test]

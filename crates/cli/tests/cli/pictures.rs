@@ -20,7 +20,8 @@ fn a_finished_run_is_drawn_from_every_side() {
     place
         .does("render results --width 300")
         .shows(&["300 x ", "results/tube-side.png"]);
-    let section = "render results --view section --position 0.25 --width 64 --bare --out section.png";
+    let section =
+        "render results --view section --position 0.25 --width 64 --bare --out section.png";
     place.does(section).shows(&["64 x 64 pixels: section.png"]);
     for options in [
         "--view space-time",
@@ -51,6 +52,19 @@ fn a_finished_run_is_drawn_from_every_side() {
             assert_eq!(place.inventory()[&name], content, "{}", name.display());
         }
     }
+}
+
+#[test]
+fn a_picture_takes_the_place_of_no_file_of_the_run() {
+    let place = place();
+    let before = place.inventory();
+    for file in ["state.checkpoint", "summary.json", "config.toml"] {
+        place
+            .call(&format!("render results --out results/{file} --format png"))
+            .expect_code(2)
+            .says(&[file, "would be lost", "name another file"]);
+    }
+    assert!(place.inventory() == before);
 }
 
 #[test]

@@ -54,6 +54,16 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
             format!("at most {} grains", limits::MOST_GRAINS),
         );
     }
+    let asked = keys.volume_fraction.or(keys.number_density);
+    if number == 0.0 && asked.is_some_and(|asked| asked > 0.0) {
+        let key = context.written(NUMBERS);
+        return context.refuse(
+            ProblemKind::OutOfRange,
+            &[key],
+            format!("{key} is less than half a grain in this tube"),
+            "take more, or a longer tube (tube.waves); an empty tube has grains.number = 0".into(),
+        );
+    }
     grains.number = number as u64;
     Some(grains)
 }

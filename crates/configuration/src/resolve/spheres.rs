@@ -103,6 +103,8 @@ fn text_of(name: &str, origin: &Origin) -> Result<String, String> {
 /// The two columns of a table under this first line.
 fn columns_of(text: &str, names: &str) -> Result<[Vec<f64>; 2], String> {
     let mut columns = [Vec::new(), Vec::new()];
+    // Spreadsheets write a byte order mark.
+    let text = text.trim_start_matches('\u{feff}');
     let lines = text.lines().map(str::trim).enumerate();
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let heading = lines.next().map_or("", |(_, line)| line);

@@ -212,7 +212,8 @@ fn a_wave_from_a_table() {
     let file = folder.join("shape.csv");
     std::fs::write(
         &file,
-        "# measured\nphase, radius\n0, 15\n0.25, 15\n0.5, 12\n0.75, 9\n",
+        // As a spreadsheet writes it, with a byte order mark.
+        "\u{feff}# measured\nphase, radius\n0, 15\n0.25, 15\n0.5, 12\n0.75, 9\n",
     )
     .unwrap();
     let name = format!("drive.table={:?}", file.to_str().unwrap());

@@ -297,6 +297,9 @@ class Simulation(Made):
         values = np.linspace(start, stop, levels)
         if not np.isfinite(values).all() or (parameter == "strain_rate" and not (values > 0).all()):
             raise ValueError(f"{parameter} cannot be led from {start} to {stop}")
+        # Before anything is computed.
+        for value in values:
+            self._run.check_drive(parameter, value)
         return ramp(self, parameter, values, periods / levels, settle, threshold, back, progress, threads)
 
     # In words

@@ -72,13 +72,18 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     grains, diameters, wall = simulation.positions, simulation.diameters, simulation.wall_positions
     from_axis = np.hypot(grains[:, 0], grains[:, 1])
     rings, radii = _wall_radius(wall, length)
+    # An open tube has no images beyond its ends.
+    repeats = np.inf if simulation.configuration["tube"]["ends"] == "open" else length
     escaped = from_axis > np.interp(grains[:, 2], rings, radii, period=length) + 0.5 * diameters
     reach = 1.06 * (radii.max() + (0.0 if _is_prescribed(simulation) else 0.5))
     shown = from_axis < _REACH * radii.mean()
     if (escaped & shown).any():
         reach = max(reach, float((np.abs(grains[:, 1]) + 0.6 * diameters)[escaped & shown].max()))
+    velocity = heading * simulation.velocities[:, 2]
+    # Where the wave stands still, the fastest grain that is shown takes its place.
     speed = simulation.strain_rate * wavelength
-    velocity = heading * simulation.velocities[:, 2] / (speed or 1.0)
+    fastest = float(f"{np.abs(velocity[shown]).max(initial=0.0):.1e}")
+    velocity = velocity / (speed or fastest or 1.0)
     with drawing(ax, DOUBLE_COLUMN, 165.0 * 2 * reach / (end - begin) + 30.0) as new:
         if _is_prescribed(simulation):
             place = np.linspace(begin, end, 400)
@@ -88,26 +93,27 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
         else:
             # Half a diameter would leave gaps where the wall is stretched.
             cut = wall[np.abs(wall[:, 0]) < 0.75]
-            _discs(new, along(cut[:, 2]), cut[:, 1], np.ones(len(cut)), length, facecolors="#80808028", edgecolors="#80808080")
+            _discs(new, along(cut[:, 2]), cut[:, 1], np.ones(len(cut)), repeats, facecolors="#80808028", edgecolors="#80808080")
         order = np.flatnonzero(shown)
         order = order[np.argsort(grains[order, 0])]
-        _spheres(new, along(grains[order, 2]), grains[order, 1], diameters[order], velocity[order], escaped[order], length)
+        _spheres(new, along(grains[order, 2]), grains[order, 1], diameters[order], velocity[order], escaped[order], repeats)
         part = "" if end - begin >= length * (1 - 1e-9) else f"  ({min(waves, all_waves - first)} of {all_waves} waves shown)"
         name = "$z/d$" if heading > 0 else "$(L - z)/d$"
         new.set(xlabel=name + part, ylabel="$y/d$", aspect="equal", xlim=(begin, end), ylim=(-reach, reach))
-        cycles = rf"$t/T$ = {simulation.period:.2f}"
-        lost = f",  {escaped.sum()} of {len(grains)} grains escaped" if escaped.any() else ""
+        now = rf"$t/T$ = {simulation.time * simulation.configuration["drive"]["strain_rate"]:.2f}" if speed else f"$t$ = {simulation.time:.1f} $t$"
+        lost = f",  {simulation.escaped} of {len(grains)} grains escaped" if simulation.escaped else ""
         if ax is None:
-            new.set_title(f"{title(simulation)},  {cycles}{lost}")
+            new.set_title(f"{title(simulation)},  {now}{lost}")
         elif lost:
             new.set_title(lost.lstrip(", "))
+        label = "axial velocity along the wave, $v_z/c$" if speed else rf"axial velocity along the tube, $v_z$/({fastest:g} $d/t$)"
         scale = ScalarMappable(Normalize(-1.0, 1.0), DIVERGING)
         within = {-1: velocity.min(initial=0.0) >= -1, 1: velocity.max(initial=0.0) <= 1}
         extend: Literal["neither", "min", "max", "both"] = (
             "neither" if all(within.values()) else "max" if within[-1] else "min" if within[1] else "both"
         )
         new.figure.colorbar(
-            scale, ax=new, label="axial velocity along the wave, $v_z/c$", location="bottom", shrink=0.3, aspect=25, extend=extend
+            scale, ax=new, label=label, location="bottom", shrink=0.3, aspect=25, extend=extend
         )
     return new
 

@@ -464,7 +464,7 @@ class State:
         return self._run.waves()
 
     def summary(self) -> Summary:
-        """The outcome so far, as ``summary.json`` of the command line has it.
+        """The outcome so far, as ``summary.json`` of the command line has it; a number that is not known yet is NaN (there: null).
 
         Returns
         -------

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 from . import _core
 from ._core import Configuration, Table
+from ._given import positive, whole
 
 
 class PlannedRun(NamedTuple):
@@ -228,8 +229,9 @@ class Study:
             print(f"\r{part:4.0%}  {done} of {total} runs, {failed} failed{rest}   ", end="", file=sys.stderr)
 
         self.store.parent.mkdir(parents=True, exist_ok=True)
-        number = (os.cpu_count() or 1) if workers is None else int(workers)
-        ending = self._study.work(os.fspath(self.store), number, limit, watch if progress else None)
+        number = (os.cpu_count() or 1) if workers is None else whole("workers", workers, 1, 1024)
+        seconds = None if limit is None else positive("limit", limit)
+        ending = self._study.work(os.fspath(self.store), number, seconds, watch if progress else None)
         if progress:
             print(file=sys.stderr)
         return ending

@@ -81,8 +81,8 @@ struct TubeKeys {
     /// Length, rounded to whole waves. Missing: two of them. The tube goes on as it begins (it is periodic).
     #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e5))]
     length: Option<f64>,
-    /// Occlusion, 1 - (clear throat)/(clear bore): 0 is a straight tube, 1 is closed.
-    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1))]
+    /// Occlusion, 1 - (clear throat)/(clear bore): towards 0 the tube is straight, and moves nothing; 1 is closed.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 1))]
     occlusion: f64,
     /// Volume of the grains over that of the straight tube.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 0.7))]
@@ -346,8 +346,10 @@ fn written(keys: &Keys, name: &str) -> String {
     if body_force != 0.0 {
         text += &format!("body_force = {body_force:?}\n");
     }
-    let lies = keys.gravity > 0.0 && tube.incline == 0.0;
-    let state = if lies { "settled" } else { "rest" };
+    // The back pressure moves grains along a lying tube unless friction holds them.
+    let weight = keys.gravity * density * PI / 6.0 * d * d / stiffness;
+    let settles = tube.incline == 0.0 && body_force.abs() < friction * weight;
+    let state = if settles { "settled" } else { "rest" };
     text + &format!(
         "\n[initial]\nstate = {state:?}\n\n[run]\nperiods = {:?}\n",
         drive.periods

@@ -49,7 +49,7 @@ pub(crate) fn text(report: &Report, figures: &str) -> String {
     text
 }
 
-/// Claims down, walls across: the verdicts, the number of each, and the option that asks for the claim.
+/// Claims down, walls across: the verdicts, and the number of each.
 fn overview(report: &Report) -> ReportTable {
     let walls = report.walls();
     let on = |finding: &Finding, wall: &str| {
@@ -73,7 +73,7 @@ fn overview(report: &Report) -> ReportTable {
             format!("**{}**", finding.verdict.name()),
         ];
         cells.extend(verdicts);
-        cells.extend([number.unwrap_or_default(), format!("`--only {id}`")]);
+        cells.push(number.unwrap_or_default());
         cells
     };
     let mut rows: Vec<Vec<String>> = report.examinations.iter().map(row).collect();
@@ -82,12 +82,12 @@ fn overview(report: &Report) -> ReportTable {
         let met = met.map(|tally| format!("{} of {}", tally.met, tally.judged));
         let mut cells = vec!["claims met".to_owned(), String::new()];
         cells.extend(met);
-        cells.extend([String::new(), String::new()]);
+        cells.push(String::new());
         rows.push(cells);
     }
     let head = ["claim", "verdict"].into_iter();
     let head = head.chain(walls.iter().map(|tally| tally.wall));
-    ReportTable::new("", head.chain(["the number", "command"]), rows)
+    ReportTable::new("", head.chain(["the number"]), rows)
 }
 
 /// A number with its name, its error and the value of the source.

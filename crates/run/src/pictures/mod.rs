@@ -95,10 +95,10 @@ fn title(configuration: &Configuration) -> String {
         ScheduledParameter::StrainRate,
         configuration.drive.strain_rate,
     );
-    let waiting = configuration.inlet.map_or(0, |inlet| inlet.waiting);
-    let number = || match (configuration.grains.number, waiting) {
-        (number, 0) => format!("*N* = {number}"),
-        (number, _) => format!("*N* = {number}, {waiting} of them waiting at first"),
+    let waits = configuration.inlet.is_some_and(|inlet| inlet.waiting > 0);
+    let number = || match (configuration.grains.number, waits) {
+        (number, false) => format!("*N* = {number}"),
+        (number, true) => format!("*N* = {number} with those that wait"),
     };
     let rest = particular(configuration).unwrap_or_else(number);
     format!(
@@ -162,7 +162,7 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     // A sample is the mean over the interval that ends with it, an average that over so many intervals.
     let end = |samples_before: usize| match samples_before {
         0 => 0.0,
-        number => samples[number.min(samples.len()) - 1].period,
+        number => samples[number.min(samples.len()) - 1].time * configuration.drive.strain_rate,
     };
     let middles = |count: usize, intervals: f64| -> Vec<f64> {
         let end = |k: usize| end((k as f64 * intervals).ceil() as usize);

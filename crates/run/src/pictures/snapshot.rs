@@ -8,7 +8,7 @@ use peristalsis_observe::TubeShape;
 
 use super::title;
 use crate::run::Run;
-use crate::scene::{moving_instant, still_instant, units};
+use crate::scene::{instant, units};
 use crate::spheres::{SeenSphere, seen_spheres};
 
 /// Length of tube that a snapshot shows at most, in wavelengths.
@@ -25,13 +25,10 @@ const OUTLINE_POINTS: u32 = 400;
 
 /// The final state of a run.
 pub(super) fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
-    let simulation = run.simulation();
-    let instant = if run.configuration().wave_speed() == 0.0 {
-        still_instant(simulation.time(), units(run.configuration()))
-    } else {
-        moving_instant(simulation.wall().cycles())
-    };
-    let title = format!("{},  {instant}", title(run.configuration()));
+    let configuration = run.configuration();
+    let period = configuration.drive.period();
+    let instant = instant(run.simulation().time(), period, units(configuration));
+    let title = format!("{},  {instant}", title(configuration));
     draw(&title, &[("", run)])
 }
 

@@ -9,6 +9,15 @@ use crate::error::RunError;
 /// Largest force amplitude and strain rate, as for the keys of the drive.
 const LARGEST: f64 = 1e6;
 
+/// The key of a parameter of the drive.
+fn key(parameter: ScheduledParameter) -> &'static str {
+    match parameter {
+        ScheduledParameter::Width => "drive.width",
+        ScheduledParameter::ForceAmplitude => "drive.force_amplitude",
+        ScheduledParameter::StrainRate => "drive.strain_rate",
+    }
+}
+
 impl Run {
     /// The value of a parameter of the drive for the next step, in the units of its key; `None` for the amplitude of the other
     /// control.
@@ -24,26 +33,16 @@ impl Run {
             .is_none_or(|schedule| schedule.rest() <= self.soonest())
     }
 
-    /// Leads a parameter of the drive to `value` within `periods` periods, linearly in time, beginning with the next step.
-    /// Within 0 periods it jumps there; what the jump does to the contacts counts as work of the wall.
-    ///
-    /// The [configuration](Run::configuration) keeps the course: a run from its start, or from a checkpoint, takes the same
-    /// course to the same bits. A `value` that the parameter already has changes no bit.
+    /// The value that a parameter of the drive has now, if it could be led to `value`.
     ///
     /// # Errors
-    /// [`RunError::Steering`] for a value out of range, for a period shorter than a step, where the wave stands still (its
-    /// periods never pass), and while the parameter is still under way; nothing is changed then.
-    pub fn drive_to(
-        &mut self,
-        parameter: ScheduledParameter,
-        value: f64,
-        periods: f64,
-    ) -> Result<(), RunError> {
+    /// As [`Run::drive_to`], but for a parameter that is under way.
+    pub fn check_drive(&self, parameter: ScheduledParameter, value: f64) -> Result<f64, RunError> {
         let refused = |reason: String| Err(RunError::Steering { reason });
-        let (name, most) = match parameter {
-            ScheduledParameter::Width => ("drive.width", 2.0 * self.configuration.tube.radius),
-            ScheduledParameter::ForceAmplitude => ("drive.force_amplitude", LARGEST),
-            ScheduledParameter::StrainRate => ("drive.strain_rate", LARGEST),
+        let name = key(parameter);
+        let most = match parameter {
+            ScheduledParameter::Width => 2.0 * self.configuration.tube.radius,
+            _ => LARGEST,
         };
         let Some(now) = self.driven(parameter) else {
             return refused(format!("{name} belongs to the other drive.control"));
@@ -64,6 +63,25 @@ impl Run {
                  shorter run.time_step"
             ));
         }
+        Ok(now)
+    }
+
+    /// Leads a parameter of the drive to `value` within `periods` periods, linearly in time, beginning with the next step.
+    /// Within 0 periods it jumps there; what the jump does to the contacts counts as work of the wall.
+    ///
+    /// The [configuration](Run::configuration) keeps the course: a run from its start, or from a checkpoint, takes the same
+    /// course to the same bits. A `value` that the parameter already has changes no bit.
+    ///
+    /// # Errors
+    /// [`RunError::Steering`] for a value out of range, for a period shorter than a step, where the wave stands still (its
+    /// periods never pass), and while the parameter is still under way; nothing is changed then.
+    pub fn drive_to(
+        &mut self,
+        parameter: ScheduledParameter,
+        value: f64,
+        periods: f64,
+    ) -> Result<(), RunError> {
+        let now = self.check_drive(parameter, value)?;
         if value == now && self.is_at_rest(parameter) {
             return Ok(());
         }
@@ -74,7 +92,8 @@ impl Run {
             .unwrap_or_else(|| Schedule::resting(parameter, now))
             .going_on(start, start + periods, value);
         let Some(schedule) = going_on else {
-            return refused(format!("{name} still follows its schedule"));
+            let reason = format!("{} still follows its schedule", key(parameter));
+            return Err(RunError::Steering { reason });
         };
         let mut configuration = self.configuration.clone();
         let schedules = &mut configuration.drive.schedules;

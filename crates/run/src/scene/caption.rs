@@ -11,14 +11,12 @@ pub(super) fn cycles(frame: &Frame) -> f64 {
     frame.value("period").unwrap_or(0.0)
 }
 
-/// An instant of a wave that moves, in markup, by the wavelengths that it has run.
-pub(crate) fn moving_instant(cycles: f64) -> String {
-    format!("*t*/*T* = {cycles:.2}")
-}
-
-/// An instant of a wave that stands still, in markup.
-pub(crate) fn still_instant(time: f64, units: Units) -> String {
-    format!("*t* = {time:.1} {}", units.time())
+/// An instant in markup: in periods of the drive, or in units of time where the wave stands still.
+pub(crate) fn instant(time: f64, period: Option<f64>, units: Units) -> String {
+    match period {
+        Some(period) => format!("*t*/*T* = {:.2}", time / period),
+        None => format!("*t* = {time:.1} {}", units.time()),
+    }
 }
 
 /// Lengths that a scale shows \[d\]: the largest that is a modest part of the picture.
@@ -50,18 +48,15 @@ impl Caption {
                 (words, 2.0 * (scene.radius + MARGIN))
             }
         };
+        let instant = instant(frame.time, scene.period, scene.units);
         let notes = if is_moving {
             let flow = match frame.value("flow_rate_ratio") {
                 Some(ratio) if ratio.is_finite() => format!(" = {}", decimal(ratio, 2)),
                 _ => ": not yet".to_owned(),
             };
-            vec![
-                moving_instant(cycles(frame)),
-                place,
-                format!("*J*/*J*_{{max}}{flow}"),
-            ]
+            vec![instant, place, format!("*J*/*J*_{{max}}{flow}")]
         } else {
-            vec![still_instant(frame.time, scene.units), place]
+            vec![instant, place]
         };
         let mut marks = Vec::new();
         if is_moving && scene.look.aspect == Aspect::Side {
@@ -71,8 +66,8 @@ impl Caption {
         let length = lengths.fold(SCALES[0], f64::max);
         Self {
             title: format!(
-                "The tube after {:.2} periods, {:.0} d long, {} grains",
-                cycles(frame),
+                "The tube at {}, {:.0} d long, {} grains",
+                notes[0].replace('*', ""),
                 scene.wall.length(),
                 frame.grains
             ),

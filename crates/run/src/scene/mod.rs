@@ -15,7 +15,7 @@ use crate::error::RunError;
 use crate::run::Run;
 
 use self::caption::Caption;
-pub(crate) use self::caption::{moving_instant, still_instant};
+pub(crate) use self::caption::instant;
 use self::field::Coloured;
 pub use self::field::Field;
 use self::spheres::force_scale;
@@ -177,6 +177,8 @@ pub struct PictureScene {
     look: Look,
     wall: Wall,
     units: Units,
+    /// Period of the drive \[t\]; `None` where the wave stands still.
+    period: Option<f64>,
     /// Distance from the axis that is shown \[d\].
     radius: f64,
     /// Length of the tube that is shown \[d\].
@@ -207,6 +209,7 @@ impl PictureScene {
         let scene = Self {
             look,
             units,
+            period: run.configuration().drive.period(),
             forces,
             radius: shown_radius(&wall, first, samples),
             wall,

@@ -5,6 +5,7 @@ mod plan;
 mod single;
 mod source;
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use peristalsis_configuration::Configuration;
@@ -101,9 +102,13 @@ impl Trajectory {
     /// # Errors
     /// [`RunError::HoldsAnotherRun`] where one is there already.
     pub fn check(folder: &Path) -> Result<(), RunError> {
-        let names = TrajectoryFormat::ALL.map(TrajectoryFormat::file_name);
-        RunError::if_one_is_in(folder, &names)?;
-        RunError::if_one_is_in(folder, &[PLAN])
+        RunError::if_one_is_in(folder, &Self::names().collect::<Vec<_>>())
+    }
+
+    /// The files of a trajectory in the folder of its run.
+    pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+        let formats = TrajectoryFormat::ALL.into_iter();
+        formats.map(TrajectoryFormat::file_name).chain([PLAN])
     }
 
     /// Goes on with the trajectory in the folder of a run, without its frames after the run's present step, and up to the
@@ -115,7 +120,7 @@ impl Trajectory {
         let path = folder.join(PLAN);
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Err(source) => {
                 let operation = "read";
                 return Err(FormatError::Io {
@@ -135,14 +140,14 @@ impl Trajectory {
         let plan = written.ending(run.configuration().run.steps());
         if plan != written {
             for format in &plan.formats {
-                drop(format.resume(folder, step)?);
+                drop(format.resume(folder, step).map_err(if_missing)?);
                 format.make_room(folder, plan.frames())?;
             }
             write_plan(folder, &plan)?;
         }
         let files = plan.formats.iter();
         let files = files.map(|format| format.resume(folder, step));
-        let files = files.collect::<Result<_, _>>()?;
+        let files = files.collect::<Result<_, _>>().map_err(if_missing)?;
         let mut trajectory = Self {
             folder: folder.to_owned(),
             plan,
@@ -214,6 +219,17 @@ impl Trajectory {
             interval_steps: self.plan.interval,
             bytes: self.files.iter().map(|file| file.bytes()).sum(),
         }
+    }
+}
+
+/// A file of a trajectory that is not there is no other fault of the disk.
+fn if_missing(error: FormatError) -> FormatError {
+    match error {
+        FormatError::Io { path, source, .. } if source.kind() == ErrorKind::NotFound => {
+            let reason = "it is missing".to_owned();
+            FormatError::NotATrajectory { path, reason }
+        }
+        other => other,
     }
 }
 

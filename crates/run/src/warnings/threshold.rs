@@ -59,15 +59,20 @@ pub(super) fn missed(run: &Run) -> Option<Warning> {
     let recorder = run.recorder();
     let found = recorder.transition_time();
     let change = change(&recorder.transition_times(), period);
+    let is_jammed = configuration.initial.state == InitialState::Jammed;
+    let is_beyond = |value: f64| match is_jammed {
+        true => value < threshold,
+        false => value > threshold,
+    };
+    let now = recorder.averages().last();
+    if found.is_none() && now.is_some_and(|now| is_beyond(*now)) {
+        // It is crossing it, and may stay.
+        return None;
+    }
     let message = match (change, found) {
         (None, Some(time)) if time < period => {
             let ladder = THRESHOLDS.into_iter().zip(recorder.transition_times());
-            let is_beyond = |value: f64| match configuration.initial.state {
-                InitialState::Rest | InitialState::Settled | InitialState::Placed => {
-                    value > threshold && threshold >= 0.0
-                }
-                InitialState::Jammed => value < threshold,
-            };
+            let is_beyond = |value: f64| is_beyond(value) && (threshold >= 0.0 || is_jammed);
             let soon = |time: Option<f64>| time.is_some_and(|time| time < PERIODS * period);
             let beyond = ladder.filter(|(value, time)| is_beyond(*value) && soon(*time));
             if beyond.count() >= 2 {

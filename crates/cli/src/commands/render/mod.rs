@@ -16,7 +16,7 @@ use serde_json::json;
 pub(crate) use self::arguments::RenderArguments;
 use self::arguments::{Origin, ViewName};
 use crate::choice::Format;
-use crate::commands::{counted, print, say, say_if_replaced};
+use crate::commands::{counted, print, refuse_loss, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::stop::Stop;
@@ -37,6 +37,7 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     };
     let usual = || folder.path().join(format!("{name}.{}", format.extension()));
     let out = arguments.out.clone().unwrap_or_else(usual);
+    refuse_loss(&out, folder.files())?;
     if arguments.view == ViewName::SpaceTime {
         return finish_picture(arguments, &out, format, &space_time(&run)?);
     }

@@ -74,6 +74,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Ending::Unwritten(source) => Err(Failure::Trajectory {
             folder: work.folder.path().to_owned(),
             source,
+            is_saved: outcome.is_saved,
         }),
         Ending::Complete => {
             tell(format!("written to {place}"));
@@ -215,13 +216,30 @@ fn go_on(
     }
     let run = match source.is_file() {
         true => read_state(source)?,
-        false => RunFolder::named(source).run()?,
+        false => not_diverged(&RunFolder::named(source))?,
     };
+    if source.join("trajectory.toml").exists() && arguments.frames.trajectory.is_empty() {
+        tell(
+            arguments.quiet,
+            "the trajectory ends here: in the new folder --trajectory begins another",
+        );
+    }
     let run = lasting(arguments, run, source, stop)?;
     stop.keep_results();
     let name = source.file_stem().unwrap_or_default().to_string_lossy();
     let folder = new_folder(arguments, &name, &run)?;
     Ok((folder, run))
+}
+
+/// The run of a folder, unless it diverged: it would do so again, and its state be lost.
+fn not_diverged(folder: &RunFolder) -> Result<Run, RunError> {
+    match folder.divergence() {
+        Some(reason) => Err(RunError::NothingToResume {
+            folder: folder.path().to_owned(),
+            reason,
+        }),
+        None => folder.run(),
+    }
 }
 
 /// Goes on with the run of a folder, in it.
@@ -231,7 +249,7 @@ fn go_on_in(
     stop: &Stop,
 ) -> Result<(RunFolder, Run), Failure> {
     let folder = RunFolder::named(path).claim()?;
-    let run = folder.run()?;
+    let run = not_diverged(&folder)?;
     let run = lasting(arguments, run, path, stop)?;
     stop.keep_results();
     Ok((folder, run))
@@ -243,6 +261,7 @@ fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Re
         Some(length) => length,
         // A full disk may have taken what comes after the state.
         None if run.is_complete()
+            && !arguments.csv
             && (source.is_file() || RunFolder::named(source).has_summary()) =>
         {
             let (folder, reason) = (source.to_owned(), "it is complete".to_owned());

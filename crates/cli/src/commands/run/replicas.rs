@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 
 use super::words::measured;
 use super::work::{Ending, Outcome, Work};
-use super::{RUNS, checked, compute_with, lasting, packed};
+use super::{RUNS, checked, compute_with, lasting, not_diverged, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
 use crate::commands::{code_of, counted, print, print_json, significant, tell, warn_besides};
 use crate::failure::Failure;
@@ -179,7 +179,7 @@ fn replica(
     let folder = RunFolder::named(path).claim()?;
     let is_begun = folder.has_state();
     let mut run = match is_begun {
-        true => folder.run()?,
+        true => not_diverged(&folder)?,
         false => packed(arguments, folder.configuration()?, stop)?,
     };
     let length = run.configuration().run.samples;
@@ -193,6 +193,7 @@ fn replica(
         return Ok(Outcome {
             ending: Ending::Complete,
             summary,
+            is_saved: false,
             finished: Ok(Vec::new()),
         });
     }

@@ -26,7 +26,7 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     let transition = match summary.transition_time {
         // The mean of a period is the first that there is.
         Some(time) if time * configuration.drive.strain_rate < 1.0 => format!(
-            "transition in the first period, at t = {time:.1} if the flow rises evenly: J/Jmax crosses {}",
+            "transition in the first period, at t = {time:.1} if the flow changes evenly: J/Jmax crosses {}",
             configuration.observe.transition_threshold
         ),
         Some(time) => format!(

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peristalsis_run::{
-    Pace, Progress, Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written,
+    Pace, Progress, Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan,
 };
 
 use crate::arguments::RunArguments;
@@ -27,6 +27,8 @@ pub(super) enum Ending {
 pub(super) struct Outcome {
     pub(super) ending: Ending,
     pub(super) summary: Summary,
+    /// Whether the state was saved where the trajectory could not be written.
+    pub(super) is_saved: bool,
     /// The figures, if its results could be written.
     pub(super) finished: Result<Vec<PathBuf>, RunError>,
 }
@@ -37,7 +39,6 @@ pub(super) struct Work {
     pub(super) folder: RunFolder,
     trajectory: Option<Trajectory>,
     save_every: Duration,
-    written: Written,
 }
 
 impl Work {
@@ -56,16 +57,15 @@ impl Work {
         if arguments.resume.is_some() && arguments.configuration.length().is_some() {
             folder.change_length(&run)?;
         }
-        let written = match arguments.csv {
-            true => Written::WithCsv,
-            false => Written::Standard,
-        };
+        if arguments.csv {
+            // From here on it is renewed whenever the tables are, also where the run is gone on with after a kill.
+            folder.write_csv(&run)?;
+        }
         Ok(Self {
             run,
             folder,
             trajectory,
             save_every: arguments.checkpoint_every,
-            written,
         })
     }
 
@@ -88,10 +88,13 @@ impl Work {
         };
         let mut summary = Summary::of(&self.run, status, message);
         summary.trajectory = report;
-        let finished = self.folder.finish(&self.run, &summary, self.written);
+        let finished = self.folder.finish(&self.run, &summary);
+        let is_unwritten = matches!(ending, Ending::Unwritten(_));
+        let is_saved = is_unwritten && self.folder.save_state(&self.run).is_ok();
         let outcome = Outcome {
             ending,
             summary,
+            is_saved,
             finished,
         };
         (self, outcome)

@@ -7,7 +7,7 @@ use std::time::Duration;
 use peristalsis_study::{Specification, Store};
 
 use super::{SubmitArguments, store_path};
-use crate::commands::{counted, print, say_if_replaced};
+use crate::commands::{counted, print, refuse_loss, say_if_replaced};
 use crate::failure::Failure;
 
 /// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
@@ -28,6 +28,9 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
             format!("{option:?} is not one option of sbatch"),
             "give one option at a time, such as --option=--mem-per-cpu=1G",
         ));
+    }
+    if let Some(path) = &arguments.out {
+        refuse_loss(path, [arguments.file.clone()])?;
     }
     let study = Specification::read(&arguments.file)?;
     let store = store_path(&arguments.store, &study);

@@ -95,7 +95,9 @@ impl Trial {
             let (fast, reference) = (self.rebound(means)?, self.rebound(means.by_reference())?);
             for i in 0..2 {
                 let apart = (fast.velocity[i] - reference.velocity[i]).length();
-                largest = largest.max(apart).max((fast.spin[i] - reference.spin[i]).abs());
+                largest = largest
+                    .max(apart)
+                    .max((fast.spin[i] - reference.spin[i]).abs());
             }
         }
         let difference = largest / self.impact.relative_velocity().length();
