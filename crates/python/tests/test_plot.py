@@ -38,3 +38,11 @@ def test_into_axes_that_there_are(small: Simulation) -> None:
 def nothing_is_left_open() -> object:
     yield
     plt.close("all")
+
+
+def test_an_open_tube_with_a_wave_that_stands_is_drawn_as_it_is() -> None:
+    silo = Simulation.preset("silo", seed=1)
+    silo.run(duration=20)
+    axes = plot.snapshot(silo)
+    assert "t$ = 20.0" in axes.get_title() and "escaped" not in axes.get_title()
+    plt.close(axes.figure)

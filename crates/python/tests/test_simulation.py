@@ -120,6 +120,23 @@ def test_a_ramp_in_width_is_a_loop(small: Simulation) -> None:
     assert not same(small, plain)
 
 
+def test_a_ramp_that_cannot_end_does_not_begin(small: Simulation) -> None:
+    for stop, reason in ((3.5, "is above 3"), (-0.2, "from 0 on")):
+        with pytest.raises(ConfigurationError, match=reason):
+            small.ramp("width", 2.8, stop, periods=8, levels=4)
+    assert small.steps == 0 and small.width == 2.6
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_stops_the_packing_of_grains() -> None:
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    begin = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        Simulation.preset("frictional", waves=1000)
+    assert time.monotonic() - begin < 10
+
+
 def test_what_cannot_change_says_so(small: Simulation) -> None:
     with pytest.raises(AttributeError, match="drive.force_amplitude is no parameter"):
         _ = small.force_amplitude

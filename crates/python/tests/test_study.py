@@ -62,3 +62,13 @@ def test_ctrl_c_saves_every_run_and_the_next_call_goes_on(tmp_path: Path) -> Non
     with pytest.raises(KeyboardInterrupt):
         study.run(workers=2)
     assert study.run(workers=2, limit=0.5) == "time_up"
+
+
+def test_workers_and_limits_that_there_are_not(tmp_path: Path) -> None:
+    study = peristalsis.study(WIDTHS, store=tmp_path / "store")
+    for workers in (0, -1, 50_000):
+        with pytest.raises(ValueError, match="workers is 1"):
+            study.run(workers=workers)
+    for limit in (float("nan"), 0.0):
+        with pytest.raises(ValueError, match="limit is a"):
+            study.run(limit=limit)

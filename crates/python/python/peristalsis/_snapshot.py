@@ -73,7 +73,7 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     from_axis = np.hypot(grains[:, 0], grains[:, 1])
     rings, radii = _wall_radius(wall, length)
     # An open tube has no images beyond its ends.
-    repeats = np.inf if simulation.configuration["tube"]["ends"] == "open" else length
+    repeats = np.inf if simulation.configuration["tube"].get("ends") == "open" else length
     escaped = from_axis > np.interp(grains[:, 2], rings, radii, period=length) + 0.5 * diameters
     reach = 1.06 * (radii.max() + (0.0 if _is_prescribed(simulation) else 0.5))
     shown = from_axis < _REACH * radii.mean()
@@ -100,7 +100,8 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
         part = "" if end - begin >= length * (1 - 1e-9) else f"  ({min(waves, all_waves - first)} of {all_waves} waves shown)"
         name = "$z/d$" if heading > 0 else "$(L - z)/d$"
         new.set(xlabel=name + part, ylabel="$y/d$", aspect="equal", xlim=(begin, end), ylim=(-reach, reach))
-        now = rf"$t/T$ = {simulation.time * simulation.configuration["drive"]["strain_rate"]:.2f}" if speed else f"$t$ = {simulation.time:.1f} $t$"
+        clock = simulation.time * simulation.configuration["drive"]["strain_rate"]
+        now = f"$t/T$ = {clock:.2f}" if speed else f"$t$ = {simulation.time:.1f} $t$"
         lost = f",  {simulation.escaped} of {len(grains)} grains escaped" if simulation.escaped else ""
         if ax is None:
             new.set_title(f"{title(simulation)},  {now}{lost}")

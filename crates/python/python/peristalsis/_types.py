@@ -83,8 +83,8 @@ class Keywords(TypedDict, total=False):
     contact_tangential_damping: float
     contact_tangential_stiffness: float
     contact_young_modulus: float
-    """contact.young_modulus. Young's modulus Y of the Hertz law, f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - A
-    sqrt(xi) v_n). (Unit: m d^-1 t^-2.)"""
+    """contact.young_modulus. Young's modulus Y of the Hertz law, f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - B
+    sqrt(xi) v_n); B is 3 A/2, or A where dissipation_form is "printed". (Unit: m d^-1 t^-2.)"""
     control: Literal["strain", "stress"]
     """drive.control. Whether the radius of the wall is prescribed (strain) or the radial force on its spheres
     (stress)."""
@@ -309,7 +309,8 @@ class Keywords(TypedDict, total=False):
     = 2.6, end = 100 } or { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }; with form =
     "course" straight lines lead from value to value. Or a list of such tables, one for each parameter."""
     seed: int
-    """run.seed. Seed of the random numbers that place the grains. (A pure number.)"""
+    """run.seed. Seed of the random numbers of the grains: their places, diameters, initial temperature and choice
+    of place at an inlet. (A pure number.)"""
     segments: int
     """drive.segments. Number n of segments in a wavelength; waveform = "segments". (A pure number.)"""
     sizes: Literal["uniform", "lognormal", "two", "table"]
@@ -402,7 +403,8 @@ class Keywords(TypedDict, total=False):
     """grains.volume_fraction. Volume fraction rho = N d^3/(6 a^2 L) of grains in a straight tube of radius a and
     length L, d^3 averaged over the diameters; N is rounded to the nearest whole number. (A pure number.)"""
     waiting: int
-    """inlet.waiting. How many of the grains wait outside at t = 0. (A pure number.)"""
+    """inlet.waiting. How many of the grains wait outside at t = 0. Those that are packed into the gap of 4
+    diameters between the ends wait as well. (A pure number.)"""
     wall_contact_range: float
     wall_drag: float
     wall_keep_axial: float
@@ -677,7 +679,7 @@ class Summary(TypedDict):
     wall_pressure: float
     """late mean pressure on the wall, each bin of the profile alike [m/(d t^2)]"""
     wall_pressure_largest: float
-    """largest late mean pressure on the wall over the phases of the wave [m/(d t^2)]"""
+    """largest late mean pressure on the wall over the positions in the wave frame [m/(d t^2)]"""
     contact_force_99: float | None
     """late mean of the normal force that 99 % of the grains' contacts do not exceed [m d/t^2]"""
     contact_force_99_error: float | None

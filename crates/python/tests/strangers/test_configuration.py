@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Mapping
 
+import numpy as np
 import pytest
 
 import peristalsis
@@ -114,3 +115,8 @@ def test_errors_speak_of_keywords_and_not_of_flags() -> None:
             make()
         assert "--set" not in str(refused.value) and "drive.wid" in str(refused.value)
     assert peristalsis.KeyedWarning("a", "b").key == "a"
+
+
+def test_truth_values_of_numpy_are_truth_values() -> None:
+    for value in (True, np.bool_(True)):
+        assert Configuration("frictional", {"wall.keep.balance": value})["wall"]["keep"]["balance"] is True
