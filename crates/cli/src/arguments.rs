@@ -251,6 +251,7 @@ pub(crate) struct PresetsArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(allow_negative_numbers = true)]
 pub(crate) struct NewtonianArguments {
     /// Bottleneck w = 2 (a - b).
     #[arg(long, value_name = "W")]
@@ -259,12 +260,7 @@ pub(crate) struct NewtonianArguments {
     #[arg(long, value_name = "A", default_value_t = 1.5)]
     pub(crate) radius: f64,
     /// Pressure rise over a wavelength, P = a^2 Dp/(8 mu c lambda).
-    #[arg(
-        long,
-        value_name = "P",
-        default_value_t = 0.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "P", default_value_t = 0.0)]
     pub(crate) pressure: f64,
     /// Print as JSON.
     #[arg(long)]

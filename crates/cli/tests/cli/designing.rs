@@ -68,7 +68,7 @@ fn a_design_that_is_wrong_is_refused_with_its_line_and_is_no_configuration() {
     place.refuses("design hose.toml --duration 3", &["use --periods"]);
     place.refuses("design --preset frictional", &["prescribed wall"]);
     place.refuses(
-        "design hose.toml --set tube.occlusion=0",
+        "design hose.toml tube.occlusion=0",
         &["tube.occlusion = 0 is too small"],
     );
     for option in ["--write", "--html"] {

@@ -59,9 +59,9 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
         let key = context.written(NUMBERS);
         return context.refuse(
             ProblemKind::OutOfRange,
-            &[key],
+            &[key, "grains.diameter_max"],
             format!("{key} is less than half a grain in this tube"),
-            "take more, or a longer tube (tube.waves); an empty tube has grains.number = 0".into(),
+            "take more, a longer tube (tube.waves) or smaller grains; an empty tube has grains.number = 0".into(),
         );
     }
     grains.number = number as u64;

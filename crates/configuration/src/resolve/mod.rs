@@ -309,10 +309,14 @@ impl Context<'_> {
         message: String,
         help: String,
     ) -> Option<T> {
-        let mut places: Vec<(&str, Origin)> = keys
-            .iter()
-            .filter_map(|key| Some((*key, self.origin(key)?)))
-            .collect();
+        let mut places: Vec<(String, Origin)> = Vec::new();
+        for (place, key) in keys.iter().enumerate() {
+            if !keys[..place].contains(key)
+                && let Some(origin) = self.origin(key)
+            {
+                places.push((written_as(key, &origin), origin));
+            }
+        }
         // What a higher layer changed is nearer to the cause than what a preset states.
         places.sort_by_key(|(_, origin)| std::cmp::Reverse(origin.source.kind));
         let mut problem = Problem::new(kind, message).key(keys[0]).help(help);
@@ -321,6 +325,19 @@ impl Context<'_> {
         }
         self.problems.push(problem);
         None
+    }
+}
+
+/// The key as it stands before its value: another one where the value follows from that, such as a material.
+fn written_as(key: &str, origin: &Origin) -> String {
+    let before = &origin.source.text[..origin.span.start];
+    let before = before.trim_end().strip_suffix('=').unwrap_or_default();
+    let is_of_key = |letter: char| letter.is_alphanumeric() || "._-".contains(letter);
+    let written = before.trim_end().rsplit(|letter| !is_of_key(letter)).next();
+    let last = |key: &str| key.rsplit('.').next().map(str::to_owned);
+    match written {
+        Some(written) if !written.is_empty() && last(written) != last(key) => written.to_owned(),
+        _ => key.to_owned(),
     }
 }
 

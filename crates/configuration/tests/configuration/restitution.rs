@@ -116,6 +116,7 @@ fn what_no_restitution_can_be_made_of_is_refused_by_its_key() {
             &[
                 "contact.restitution=0.1",
                 "contact.normal_stiffness=1e12",
+                "grains.number=4",
                 "grains.diameter_max=1e5",
                 "grains.diameter_min=1e5",
                 "tube.wavelength=1e6",

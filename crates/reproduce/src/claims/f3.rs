@@ -1,6 +1,7 @@
 //! F3: whether transition times of several strain rates collapse.
 
 use peristalsis_analysis::WidthEnsemble;
+use peristalsis_figures::Units;
 
 use super::prelude::*;
 
@@ -106,7 +107,8 @@ fn against_rate(walls: &[(String, Vec<(f64, Uncertain)>)]) -> ChartFigure {
     let drawn = walls
         .iter()
         .map(|(name, known)| joined(name, known.iter().copied()));
-    let mut panel = ChartPanel::new(&label(Axis::StrainRate), "*C* = *τ*(*w*_{c} − *w*)/*d*")
+    let amplitude = format!("amplitude, *C*/*d* {}", Units::Linear.rate());
+    let mut panel = ChartPanel::new(&label(Axis::StrainRate), &amplitude)
         .x_scale(Scale::Logarithmic)
         .y_scale(Scale::Logarithmic)
         .with_all(numbered(drawn));

@@ -86,7 +86,7 @@ fn title(configuration: &Configuration) -> String {
             force_amplitude, ..
         } => {
             let force = value(ScheduledParameter::ForceAmplitude, force_amplitude);
-            let density = format!("*n* = {:.3},  ", configuration.number_density());
+            let density = format!("*n* = {:.3} *d*^{{−3}},  ", configuration.number_density());
             let unit = units(configuration).force();
             (format!("*f*^{{P}} = {force} {unit}"), density)
         }
