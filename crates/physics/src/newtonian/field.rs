@@ -13,13 +13,6 @@ impl NewtonianPeristalsis {
         -2.0 * self.pressure_gradient(position) * (wall * wall - radius * radius)
     }
 
-    /// Axial velocity in the wave frame, u - c, in c: negative where the fluid lags the wave.
-    ///
-    /// Arguments as in [`axial_velocity`](Self::axial_velocity). -1 at the wall.
-    pub fn wave_frame_velocity(&self, radius: f64, position: f64) -> f64 {
-        self.axial_velocity(radius, position) - 1.0
-    }
-
     /// Radial velocity, the same in both frames, in c a/lambda, positive outward.
     ///
     /// v = -(1/r) dPsi/dx = -(h^2)' (r/h^2) [1 - s/2 - (1 + q/h^2)(1 - s)],   s = (r/h)^2
@@ -55,10 +48,11 @@ pub(super) mod pathline {
     //! Paths of fluid particles, integrated from the velocities alone.
 
     use super::NewtonianPeristalsis;
+    use crate::newtonian::tests::wave_frame_velocity;
 
     fn velocity(flow: &NewtonianPeristalsis, [position, radius]: [f64; 2]) -> [f64; 2] {
         [
-            flow.wave_frame_velocity(radius, position),
+            wave_frame_velocity(flow, radius, position),
             flow.radial_velocity(radius, position),
         ]
     }
@@ -100,7 +94,7 @@ pub(super) mod pathline {
 #[cfg(test)]
 mod tests {
     use super::pathline;
-    use crate::newtonian::tests::flow;
+    use crate::newtonian::tests::{flow, wave_frame_velocity};
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
@@ -119,7 +113,7 @@ mod tests {
                 - flow.stream_function(radius - step, position)) / (2.0 * step);
             let along_axis = (flow.stream_function(radius, position + step)
                 - flow.stream_function(radius, position - step)) / (2.0 * step);
-            let axial = flow.wave_frame_velocity(radius, position);
+            let axial = wave_frame_velocity(&flow, radius, position);
             let radial = flow.radial_velocity(radius, position);
             let scale = 1.0 + axial.abs() + radial.abs();
             prop_assert!((along_radius / radius - axial).abs() < 1e-5 * scale);

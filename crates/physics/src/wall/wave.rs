@@ -165,14 +165,6 @@ impl RadiusWave {
             slope: -self.heading / self.wavelength * self.amplitude * slope,
         }
     }
-
-    /// Position in the wave frame, in wavelengths in \[0, 1): the distance along the wave from a place of phase 0.
-    ///
-    /// A wave along +z is a function of z - ct; the position is (heading z - c t)/lambda folded to one wavelength.
-    pub fn wave_frame_position(&self, z: f64, cycles: f64) -> f64 {
-        let position = self.heading * z / self.wavelength - cycles;
-        position - position.floor()
-    }
 }
 
 #[cfg(test)]
@@ -241,9 +233,6 @@ mod tests {
         let (forward, backward) = (wave(-1.0), wave(1.0));
         for (z, cycles) in [(0.3, 0.1), (7.7, 3.9), (-4.0, 12.25)] {
             assert!((forward.radius(z, cycles) - backward.radius(-z, cycles)).abs() < 1e-14);
-            let one = forward.wave_frame_position(z, cycles);
-            let other = backward.wave_frame_position(-z, cycles);
-            assert!((one - other).abs() < 1e-12);
         }
     }
 }

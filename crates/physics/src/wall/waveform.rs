@@ -127,15 +127,6 @@ impl Waveform {
             Self::Roller => ROLLER_CURVATURES[0] * ROLLER_CONTACT / TAU,
         }
     }
-
-    /// Largest size of the second derivative against 2 pi phase.
-    pub fn most_curved(self) -> f64 {
-        match self {
-            Self::Sine => 1.0,
-            Self::Bolus => 2.0,
-            Self::Roller => ROLLER_CURVATURES[1] / (TAU * TAU),
-        }
-    }
 }
 
 /// Second derivatives of the roller's waveform on the roller and, with the other sign, on the shoulder.
@@ -199,7 +190,7 @@ mod tests {
         for form in Waveform::ALL {
             assert!((form.value(0.75) + 1.0).abs() < 1e-15, "{form:?}");
             let (mut sum, mut least, mut largest) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
-            let (mut steepest, mut most_curved) = (0.0_f64, 0.0_f64);
+            let mut steepest = 0.0_f64;
             for step in 0..steps {
                 // Beyond one cycle on either side, too.
                 let phase = 3.0 * (f64::from(step) + 0.5) / f64::from(steps) - 1.0;
@@ -221,7 +212,6 @@ mod tests {
                     "{form:?} at {phase}"
                 );
                 steepest = steepest.max(slope.abs() / TAU);
-                most_curved = most_curved.max((ahead.1 - behind.1).abs() / (2.0 * h * TAU * TAU));
             }
             assert!(
                 (sum / f64::from(steps) - form.mean()).abs() < 1e-8,
@@ -231,10 +221,6 @@ mod tests {
             assert!(
                 (steepest / form.steepest() - 1.0).abs() < 1e-3,
                 "{form:?}: {steepest}"
-            );
-            assert!(
-                (most_curved / form.most_curved() - 1.0).abs() < 1e-3,
-                "{form:?}: {most_curved}"
             );
         }
         // Half way up its flank by hand: cos^2(pi/4), and s = 1/8 on the roller: (1/64)/(1/20) - 1.
