@@ -314,65 +314,42 @@ impl<M: Machine> Vector<Lanes<M>> for LaneVector<M> {
     }
 }
 
-/// An operator on numbers, by the machine's operation of that name.
+/// Operators on numbers, truth values and vectors, and what each answers.
 macro_rules! operators {
-    ($($operator:ident $operation:ident),+) => {$(
-        impl<A: Arithmetic<N>, const N: usize> $operator for Numbers<A, N> {
+    ($([$($parameters:tt)+] $operator:ident $operation:ident for $of:ty:
+        |$this:ident $(, $other:ident: $with:ty)?| $answer:expr;)+) => {$(
+        impl<$($parameters)+> $operator$(<$with>)? for $of {
             type Output = Self;
 
             #[inline(always)]
-            fn $operation(self, other: Self) -> Self {
-                Self(A::$operation(self.0, other.0))
+            fn $operation($this $(, $other: $with)?) -> Self {
+                $answer
             }
         }
     )+};
 }
 
-operators!(Add add, Sub sub, Mul mul);
+operators! {
+    [A: Arithmetic<N>, const N: usize] Add add for Numbers<A, N>:
+        |self, other: Self| Self(A::add(self.0, other.0));
+    [A: Arithmetic<N>, const N: usize] Sub sub for Numbers<A, N>:
+        |self, other: Self| Self(A::sub(self.0, other.0));
+    [A: Arithmetic<N>, const N: usize] Mul mul for Numbers<A, N>:
+        |self, other: Self| Self(A::mul(self.0, other.0));
+    [M: Machine] Div div for Lanes<M>: |self, other: Self| Self(M::div(self.0, other.0));
+    [M: Machine] Neg neg for Lanes<M>: |self| self * Self::splat(-1.0);
 
-impl<M: Machine> Div for Lanes<M> {
-    type Output = Self;
+    [M: Machine] BitAnd bitand for Mask<M>: |self, other: Self| Self(self.0 & other.0);
+    [M: Machine] BitOr bitor for Mask<M>: |self, other: Self| Self(self.0 | other.0);
+    [M: Machine] Not not for Mask<M>: |self| Self(!self.0);
 
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        Self(M::div(self.0, other.0))
-    }
-}
-
-impl<M: Machine> BitAnd for Mask<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Self(self.0 & other.0)
-    }
-}
-
-impl<M: Machine> BitOr for Mask<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-}
-
-impl<M: Machine> Neg for Lanes<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self * Self::splat(-1.0)
-    }
-}
-
-impl<M: Machine> Not for Mask<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(!self.0)
-    }
+    [M: Machine] Add add for LaneVector<M>:
+        |self, other: Self| Self::new(self.x + other.x, self.y + other.y, self.z + other.z);
+    [M: Machine] Sub sub for LaneVector<M>:
+        |self, other: Self| Self::new(self.x - other.x, self.y - other.y, self.z - other.z);
+    [M: Machine] Neg neg for LaneVector<M>: |self| self.map(|component| -component);
+    [M: Machine] Mul mul for LaneVector<M>:
+        |self, by: Lanes<M>| self.map(|component| component * by);
 }
 
 impl<M: Machine> AddAssign for Lanes<M> {
@@ -382,46 +359,10 @@ impl<M: Machine> AddAssign for Lanes<M> {
     }
 }
 
-impl<M: Machine> Add for LaneVector<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self::new(self.x + other.x, self.y + other.y, self.z + other.z)
-    }
-}
-
 impl<M: Machine> AddAssign for LaneVector<M> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-
-impl<M: Machine> Sub for LaneVector<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self::new(self.x - other.x, self.y - other.y, self.z - other.z)
-    }
-}
-
-impl<M: Machine> Neg for LaneVector<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self.map(|component| -component)
-    }
-}
-
-impl<M: Machine> Mul<Lanes<M>> for LaneVector<M> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, by: Lanes<M>) -> Self {
-        self.map(|component| component * by)
     }
 }
 
