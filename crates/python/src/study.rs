@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use peristalsis_study::{Effort, Ending, Specification, Store, work_on};
+use peristalsis_study::{Effort, Ending, Specification, Store, StudyError, work_on};
 use pyo3::exceptions::PyFileNotFoundError;
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict, PyList};
@@ -30,10 +30,8 @@ impl Study {
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
         Specification::from_toml(name, text, |file| {
             let path = folder.join(file);
-            match std::fs::read_to_string(&path) {
-                Ok(text) => Ok((path.display().to_string(), text)),
-                Err(source) => Err(peristalsis_study::StudyError::Read { path, source }),
-            }
+            let text = std::fs::read_to_string(&path).map_err(StudyError::read(&path))?;
+            Ok((path.display().to_string(), text))
         })
         .map(|specification| Self { specification })
         .map_err(of_study)

@@ -118,6 +118,18 @@ impl StudyError {
         }
     }
 
+    /// Says which file that was named cannot be read.
+    pub fn read(path: impl Into<PathBuf>) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Read { path, source }
+    }
+
+    /// Says which file holds no rows of finished runs.
+    pub fn not_rows(path: impl Into<PathBuf>) -> impl FnOnce(String) -> Self {
+        let path = path.into();
+        move |reason| Self::NotRows { path, reason }
+    }
+
     /// Says what was tried where.
     pub(crate) fn io(
         operation: &'static str,

@@ -81,16 +81,11 @@ impl Reproduction {
 
 impl Rows {
     fn read(path: &Path) -> Result<Self, StudyError> {
-        fs::metadata(path).map_err(|source| StudyError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        let not_rows = |reason: String| StudyError::NotRows {
-            path: path.to_owned(),
-            reason,
-        };
-        let table = read_table(path).map_err(|error| not_rows(error.to_string()))?;
-        let rows = Row::all_of(&table).map_err(not_rows)?;
+        fs::metadata(path).map_err(StudyError::read(path))?;
+        let rows = read_table(path)
+            .map_err(|error| error.to_string())
+            .and_then(|table| Row::all_of(&table))
+            .map_err(StudyError::not_rows(path))?;
         Ok(Self {
             path: path.to_owned(),
             identities: rows.iter().map(Row::identity).collect(),
@@ -100,13 +95,9 @@ impl Rows {
 
 /// The tables in a folder, by name.
 fn files_of(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
-    let failed = |source| StudyError::Read {
-        path: folder.to_owned(),
-        source,
-    };
     let mut files = Vec::new();
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
+    for entry in fs::read_dir(folder).map_err(StudyError::read(folder))? {
+        let path = entry.map_err(StudyError::read(folder))?.path();
         let ending = path.extension();
         let is_table = ending.is_some_and(|ending| ending == "csv" || ending == "parquet");
         if is_table && path.is_file() {

@@ -84,12 +84,7 @@ impl Specification {
     /// [`StudyError::Read`] where a file cannot be read, [`StudyError::Configuration`] with everything that is wrong in
     /// it.
     pub fn read(path: &Path) -> Result<Self> {
-        let read = |path: &Path| {
-            fs::read_to_string(path).map_err(|source| StudyError::Read {
-                path: path.to_owned(),
-                source,
-            })
-        };
+        let read = |path: &Path| fs::read_to_string(path).map_err(StudyError::read(path));
         let text = read(path)?;
         let folder = path.parent().unwrap_or(Path::new(""));
         Self::from_toml(&path.display().to_string(), &text, |file| {

@@ -54,14 +54,8 @@ impl Store {
     /// # Errors
     /// [`StudyError::NotRows`] where it is no such archive, errors of reading and writing.
     pub fn import_archive(&self, path: &Path) -> Result<Packed> {
-        let refused = |reason: String| StudyError::NotRows {
-            path: path.to_owned(),
-            reason,
-        };
-        let file = File::open(path).map_err(|source| StudyError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+        let refused = |reason: String| StudyError::not_rows(path)(reason);
+        let file = File::open(path).map_err(StudyError::read(path))?;
         let scratch = tempfile::Builder::new()
             .prefix(".import-")
             .tempdir_in(self.path())

@@ -73,10 +73,7 @@ impl Store {
     /// A finished run with the row that the index has of it.
     fn finished_by_index(&self, run: PlannedRun, entry: &Entry) -> Result<Finished> {
         let text = entry.row.as_deref().unwrap_or_default();
-        let row = Row::from_csv(text).map_err(|reason| StudyError::NotRows {
-            path: self.path().to_owned(),
-            reason,
-        })?;
+        let row = Row::from_csv(text).map_err(StudyError::not_rows(self.path()))?;
         Ok(Finished {
             run,
             row,

@@ -36,10 +36,7 @@ impl Store {
                 .and_then(|run| row.contradiction(&survey.plan.configuration(run)));
             let contradiction = contradiction.or_else(|| row.impossible());
             if let Some(reason) = contradiction {
-                return Err(StudyError::NotRows {
-                    path: path.to_owned(),
-                    reason,
-                });
+                return Err(StudyError::not_rows(path)(reason));
             }
         }
         let mut table = first.table().clone();
@@ -92,22 +89,13 @@ impl Store {
 /// The rows in a table of a file, whose ending says how it is written.
 fn rows_of(path: &Path) -> Result<Vec<Row>> {
     let table = read_table(path).map_err(|error| match error {
-        FormatError::Io { source, .. } => StudyError::Read {
-            path: path.to_owned(),
-            source,
-        },
-        other => StudyError::NotRows {
-            path: path.to_owned(),
-            reason: other.to_string(),
-        },
+        FormatError::Io { source, .. } => StudyError::read(path)(source),
+        other => StudyError::not_rows(path)(other.to_string()),
     })?;
     if table.rows() == 0 {
         return Ok(Vec::new());
     }
-    Row::all_of(&table).map_err(|reason| StudyError::NotRows {
-        path: path.to_owned(),
-        reason,
-    })
+    Row::all_of(&table).map_err(StudyError::not_rows(path))
 }
 
 fn imported_entry(row: &Row, table: &str) -> Entry {
