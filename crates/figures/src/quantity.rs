@@ -46,49 +46,39 @@ pub enum Quantity {
 impl Units {
     /// Unit of time in markup.
     pub fn time(self) -> &'static str {
-        match self {
-            Self::Linear => "(*m*/*k*)^{1/2}",
-            Self::Hertz => "*t*^{\\*}",
-        }
+        self.of("(*m*/*k*)^{1/2}", "*t*^{\\*}")
     }
 
     /// Unit of a rate in markup.
     pub fn rate(self) -> &'static str {
-        match self {
-            Self::Linear => "(*k*/*m*)^{1/2}",
-            Self::Hertz => "*t*^{\\*−1}",
-        }
+        self.of("(*k*/*m*)^{1/2}", "*t*^{\\*−1}")
     }
 
     /// Unit of acceleration in markup.
     pub fn acceleration(self) -> &'static str {
-        match self {
-            Self::Linear => "*kd*/*m*",
-            Self::Hertz => "*d*/*t*^{\\*2}",
-        }
+        self.of("*kd*/*m*", "*d*/*t*^{\\*2}")
     }
 
     /// Unit of pressure in markup.
     pub fn pressure(self) -> &'static str {
-        match self {
-            Self::Linear => "*k*/*d*",
-            Self::Hertz => "*Y*",
-        }
+        self.of("*k*/*d*", "*Y*")
     }
 
     /// Factor in markup that turns a pressure into a pure number.
     pub fn per_pressure(self) -> &'static str {
-        match self {
-            Self::Linear => " *d*/*k*",
-            Self::Hertz => "/*Y*",
-        }
+        self.of(" *d*/*k*", "/*Y*")
     }
 
     /// Unit of force in markup.
     pub fn force(self) -> &'static str {
+        self.of("*kd*", "*Yd*^{2}")
+    }
+
+    /// What these units have for linear and for Hertz contacts.
+    fn of(self, linear: &'static str, hertz: &'static str) -> &'static str {
         match self {
-            Self::Linear => "*kd*",
-            Self::Hertz => "*Yd*^{2}",
+            Self::Linear => linear,
+            Self::Hertz => hertz,
         }
     }
 }
