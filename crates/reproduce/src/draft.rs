@@ -104,7 +104,7 @@ impl Draft {
         self.concluded(judgement.verdict, summary, statistics, &needed)
     }
 
-    /// The finding with its verdict.
+    /// The finding with its verdict, which is open where the statistics do not suffice.
     pub(crate) fn concluded(
         self,
         verdict: Verdict,
@@ -112,6 +112,17 @@ impl Draft {
         statistics: Statistics,
         needed: &Statistics,
     ) -> Finding {
-        self.finding.concluded(verdict, summary, statistics, needed)
+        let is_sufficient = statistics.suffice(needed);
+        Finding {
+            verdict: if is_sufficient {
+                verdict
+            } else {
+                Verdict::Open
+            },
+            summary,
+            statistics,
+            needed: *needed,
+            ..self.finding
+        }
     }
 }

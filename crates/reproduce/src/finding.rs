@@ -163,50 +163,15 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// A finding with a verdict and nothing else yet; the verdict is open where the statistics do not suffice.
-    pub fn new(
-        verdict: Verdict,
-        summary: String,
-        statistics: Statistics,
-        needed: &Statistics,
-    ) -> Self {
-        let empty = Self {
-            varied: "width",
-            ..Self::default()
-        };
-        empty.concluded(verdict, summary, statistics, needed)
-    }
-
-    /// The same with a verdict, which is open where the statistics do not suffice.
-    pub(crate) fn concluded(
-        self,
-        verdict: Verdict,
-        summary: String,
-        statistics: Statistics,
-        needed: &Statistics,
-    ) -> Self {
-        let is_sufficient = statistics.suffice(needed);
-        Self {
-            verdict: if is_sufficient {
-                verdict
-            } else {
-                Verdict::Open
-            },
-            summary,
-            statistics,
-            needed: *needed,
-            ..self
-        }
-    }
-
     /// A finding for which there are too few runs to say anything.
     pub fn nothing(reason: &str, statistics: Statistics, needed: &Statistics) -> Self {
-        Self::new(Verdict::Open, reason.to_owned(), statistics, needed)
-    }
-
-    /// The same, with the parameter that is varied at each strain rate.
-    pub(crate) fn varying(self, varied: &'static str) -> Self {
-        Self { varied, ..self }
+        Self {
+            summary: reason.to_owned(),
+            statistics,
+            needed: *needed,
+            varied: "width",
+            ..Self::default()
+        }
     }
 
     /// The verdict that follows from checks and orders alone; open where nothing was checked.

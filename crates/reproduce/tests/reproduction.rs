@@ -55,15 +55,16 @@ fn count(evidence: &Evidence, study: &str) -> Result<Finding, ReproduceError> {
         replicates: results.rows().len(),
         runs: results.rows().len(),
     };
-    Ok(Finding::new(
-        Verdict::Reproduced,
-        format!("{} runs, {} missing", results.rows().len(), results.missing),
+    Ok(Finding {
+        verdict: Verdict::Reproduced,
+        summary: format!("{} runs, {} missing", results.rows().len(), results.missing),
         statistics,
-        &Statistics {
+        needed: Statistics {
             replicates: 2,
             ..Statistics::FOR_A_VERDICT
         },
-    ))
+        ..Finding::default()
+    })
 }
 
 const fn claim(

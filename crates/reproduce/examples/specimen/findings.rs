@@ -128,14 +128,19 @@ fn texts<const N: usize>(texts: [&str; N]) -> Vec<String> {
 /// A finding with a verdict and nothing else yet.
 fn finding(verdict: Verdict, summary: &str, statistics: [usize; 4]) -> Finding {
     let [strain_rates, widths, replicates, runs] = statistics;
-    let statistics = Statistics {
-        strain_rates,
-        widths,
-        replicates,
-        runs,
-    };
-    let needed = &Statistics::FOR_A_VERDICT;
-    Finding::new(verdict, summary.to_owned(), statistics, needed)
+    Finding {
+        verdict,
+        summary: summary.to_owned(),
+        statistics: Statistics {
+            strain_rates,
+            widths,
+            replicates,
+            runs,
+        },
+        needed: Statistics::FOR_A_VERDICT,
+        varied: "width",
+        ..Finding::default()
+    }
 }
 
 /// A number whose intervals have these ends.

@@ -62,8 +62,10 @@ pub(super) fn draft(prose: Prose) -> Draft {
 
 /// A finding on forces without runs.
 pub(super) fn nothing(prose: &Prose) -> Finding {
-    let finding = prose.nothing(Statistics::default(), &NEEDED);
-    finding.varying("force")
+    Finding {
+        varied: "force",
+        ..prose.nothing(Statistics::default(), &NEEDED)
+    }
 }
 
 /// Whether the grains of a run are frictionless.

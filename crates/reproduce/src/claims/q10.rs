@@ -194,8 +194,10 @@ impl<'a> Outcome<'a> {
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let outcomes = Outcome::all_of(evidence.study("elastic-sensitivity")?.rows());
     if outcomes.is_empty() {
-        let nothing = PROSE.nothing(Statistics::default(), &Q10_NEEDED);
-        return Ok(nothing.varying("force"));
+        return Ok(Finding {
+            varied: "force",
+            ..PROSE.nothing(Statistics::default(), &Q10_NEEDED)
+        });
     }
     let tight = outcomes.iter().filter(|outcome| outcome.holds_its_grains());
     let tight: Vec<[Option<bool>; 4]> = tight.map(Outcome::holds).collect();
