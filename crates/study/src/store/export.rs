@@ -197,10 +197,11 @@ impl Store {
         let mut series = Vec::new();
         for identity in computed(finished) {
             let table = parquet::read(&self.run_folder(identity).join(TIMESERIES))?;
-            // A study may keep other columns.
-            let missing = || vec![f64::NAN; table.rows()];
-            let values = columns.map(|[name, ..]| table.reals(name));
-            let values = values.map(|values| values.map_or_else(|_| missing(), <[f64]>::to_vec));
+            let values = columns.map(|[name, ..]| match table.reals(name) {
+                Ok(values) => values.to_vec(),
+                // A study may keep other columns.
+                Err(_) => vec![f64::NAN; table.rows()],
+            });
             series.push((identity, values));
         }
         by_run(columns, series)
@@ -313,8 +314,7 @@ fn failed_table(survey: &Survey) -> Result<Table> {
         })
         .collect();
     let runs: Vec<PlannedRun> = failed.iter().map(|(run, _)| *run).collect();
-    let identities = runs.iter().map(|run| run.identity.to_string());
-    let identities = Values::Text(identities.collect());
+    let identities = Values::Text(runs.iter().map(|run| run.identity.to_string()).collect());
     let replicates = Values::Integer(runs.iter().map(|run| run.replicate.into()).collect());
     let number = "number of the replicate, from 0";
     let reasons = failed.iter().map(|(_, entry)| entry.reason.clone());

@@ -33,8 +33,8 @@ impl Store {
         for row in &rows {
             let contradiction = runs
                 .get(&row.identity())
-                .and_then(|run| row.contradiction(&survey.plan.configuration(run)));
-            let contradiction = contradiction.or_else(|| row.impossible());
+                .and_then(|run| row.contradiction(&survey.plan.configuration(run)))
+                .or_else(|| row.impossible());
             if let Some(reason) = contradiction {
                 return Err(StudyError::not_rows(path)(reason));
             }
