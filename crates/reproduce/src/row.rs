@@ -9,28 +9,6 @@ use peristalsis_run::THRESHOLDS;
 use crate::finding::Statistics;
 use crate::thresholds::MOST_DRIFT;
 
-/// Columns of numbers that every table of runs has, besides the transition times at [`THRESHOLDS`].
-const NUMBERS: [&str; 9] = [
-    "width",
-    "strain_rate",
-    "volume_fraction",
-    "radius",
-    "wavelength",
-    "time",
-    "flow_rate_ratio",
-    "flow_rate_ratio_error",
-    "transition_time",
-];
-/// Columns of whole numbers that every table of runs has.
-const WHOLE_NUMBERS: [&str; 6] = [
-    "spheres_per_ring",
-    "rings_per_wave",
-    "grains",
-    "waves",
-    "escaped",
-    "replicate",
-];
-
 /// How the grains stood at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Start {
@@ -95,10 +73,10 @@ pub(crate) fn check(table: &Table) -> Result<(), FormatError> {
     for name in ["identity", "initial_state"] {
         table.texts(name)?;
     }
-    for name in NUMBERS {
+    for name in Row::NUMBERS {
         table.reals(name)?;
     }
-    for name in WHOLE_NUMBERS {
+    for name in Row::WHOLE_NUMBERS {
         table.integers(name)?;
     }
     for place in 0..THRESHOLDS.len() {
@@ -126,6 +104,28 @@ pub(crate) fn nearest_threshold(wanted: f64) -> usize {
 }
 
 impl<'a> Row<'a> {
+    /// Columns of numbers that every table of runs has, besides the transition times at [`THRESHOLDS`].
+    pub const NUMBERS: [&'static str; 9] = [
+        "width",
+        "strain_rate",
+        "volume_fraction",
+        "radius",
+        "wavelength",
+        "time",
+        "flow_rate_ratio",
+        "flow_rate_ratio_error",
+        "transition_time",
+    ];
+    /// Columns of whole numbers that every table of runs has.
+    pub const WHOLE_NUMBERS: [&'static str; 6] = [
+        "spheres_per_ring",
+        "rings_per_wave",
+        "grains",
+        "waves",
+        "escaped",
+        "replicate",
+    ];
+
     /// A number; NaN where the column is missing or holds no numbers.
     pub(crate) fn number(&self, column: &str) -> f64 {
         match self.table.column(column).map(|column| &column.values) {

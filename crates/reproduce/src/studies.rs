@@ -83,12 +83,7 @@ impl StudyFile {
     /// # Errors
     /// [`StudyError`] where the file is wrong.
     pub fn specification(&self, size: Size) -> Result<Specification, StudyError> {
-        Specification::from_toml(self.path, self.text(size), |name| {
-            Err(StudyError::Read {
-                path: name.into(),
-                source: std::io::Error::other("a study of the claims builds on a preset"),
-            })
-        })
+        Specification::alone(self.path, self.text(size))
     }
 
     /// The study of this name.

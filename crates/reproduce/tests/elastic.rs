@@ -598,8 +598,7 @@ fn settings_are_named_and_counted() {
 /// The full design of a study.
 fn full(name: &str) -> (Specification, Plan) {
     let file = STUDIES.iter().find(|study| study.name == name).unwrap();
-    let text = file.text(Size::Full);
-    let specification = Specification::from_toml(file.path, text, |_| unreachable!()).unwrap();
+    let specification = file.specification(Size::Full).unwrap();
     let plan = specification.plan().clone();
     (specification, plan)
 }

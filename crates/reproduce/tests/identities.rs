@@ -13,7 +13,6 @@ use std::fs;
 use std::path::Path;
 
 use peristalsis_reproduce::{STUDIES, Size};
-use peristalsis_study::{Specification, StudyError};
 use sha2::{Digest, Sha256};
 
 #[test]
@@ -21,13 +20,7 @@ fn runs_are_who_they_were() {
     let mut found = String::new();
     for study in STUDIES {
         for size in [Size::Quick, Size::Full] {
-            let specification = Specification::from_toml(study.path, study.text(size), |name| {
-                Err(StudyError::Read {
-                    path: name.into(),
-                    source: std::io::Error::other("builds on a preset"),
-                })
-            });
-            let specification = specification.unwrap();
+            let specification = study.specification(size).unwrap();
             let plan = specification.plan();
             let mut digest = Sha256::new();
             for run in plan.runs() {

@@ -8,7 +8,6 @@ mod rows;
 use std::collections::BTreeMap;
 
 use peristalsis_reproduce::{CLAIMS, Evidence, Finding, Lattice, STUDIES, Size, Start, Verdict};
-use peristalsis_study::Specification;
 
 use rows::{Rows, assert_says, assert_verdict, examine, value};
 
@@ -236,8 +235,7 @@ fn one_lattice_alone_is_examined() {
 fn every_study_file_is_valid_and_named_for_itself() {
     for study in STUDIES {
         for size in [Size::Quick, Size::Full] {
-            let specification =
-                Specification::from_toml(study.path, study.text(size), |_| unreachable!()).unwrap();
+            let specification = study.specification(size).unwrap();
             assert_eq!(specification.name, study.name);
             assert!(!specification.plan().runs().is_empty());
         }

@@ -9,7 +9,7 @@
 //! ```
 //! use peristalsis_study::Specification;
 //!
-//! let study = Specification::from_toml(
+//! let study = Specification::alone(
 //!     "study.toml",
 //!     r#"
 //!         name = "widths"
@@ -21,7 +21,6 @@
 //!         to = 2.9
 //!         step = 0.1
 //!     "#,
-//!     |_| unreachable!("it builds on a preset"),
 //! )?;
 //! assert_eq!(study.plan().runs().len(), 12);
 //! # Ok::<(), peristalsis_study::StudyError>(())

@@ -7,28 +7,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use peristalsis_formats::{Table, Values};
 use peristalsis_reproduce::{CLAIMS, Evidence, Finding, STUDIES, Verdict};
 
-/// Columns that every row has: whole numbers, then numbers.
-const WHOLE: [&str; 6] = [
-    "spheres_per_ring",
-    "rings_per_wave",
-    "grains",
-    "waves",
-    "escaped",
-    "replicate",
-];
-const NUMBERS: [&str; 11] = [
-    "width",
-    "strain_rate",
-    "volume_fraction",
-    "radius",
-    "wavelength",
-    "time",
-    "periods",
-    "flow_rate_ratio",
-    "flow_rate_ratio_error",
-    "transition_time",
-    "transition_threshold",
-];
+/// Columns of whole numbers that every row has.
+const WHOLE: [&str; 6] = peristalsis_reproduce::Row::WHOLE_NUMBERS;
 
 /// Texts and numbers of a run by column.
 type Row = (BTreeMap<String, String>, BTreeMap<String, f64>);
@@ -113,7 +93,8 @@ impl Rows {
     /// The table of a study; every column that a claim may need is there.
     pub(crate) fn table(&self) -> Table {
         let mut texts: BTreeSet<&str> = BTreeSet::from(["identity", "initial_state"]);
-        let mut numbers: BTreeSet<&str> = NUMBERS.into();
+        let mut numbers: BTreeSet<&str> = peristalsis_reproduce::Row::NUMBERS.into();
+        numbers.extend(["periods", "transition_threshold"]);
         let ladder: Vec<String> = (1..=9)
             .map(|n| format!("transition_time_{}", 10 * n))
             .collect();

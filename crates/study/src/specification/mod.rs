@@ -4,9 +4,9 @@ mod axis;
 mod keys;
 mod points;
 
-use std::fs;
 use std::ops::Range;
 use std::path::Path;
+use std::{fs, io};
 
 use peristalsis_configuration::document::{self, Item, Node, Table};
 use peristalsis_configuration::{
@@ -90,6 +90,17 @@ impl Specification {
         Self::from_toml(&path.display().to_string(), &text, |file| {
             let path = folder.join(file);
             Ok((path.display().to_string(), read(&path)?))
+        })
+    }
+
+    /// Reads the text of a study file that builds on a preset, and on no other file.
+    ///
+    /// # Errors
+    /// As [`Specification::read`]; a file that it names counts as one that cannot be read.
+    pub fn alone(name: &str, text: &str) -> Result<Self> {
+        Self::from_toml(name, text, |file| {
+            let reason = io::Error::other("this study may build on a preset only");
+            Err(StudyError::read(file)(reason))
         })
     }
 

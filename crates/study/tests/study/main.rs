@@ -44,12 +44,7 @@ const TWO_WORKERS: Effort = Effort {
 };
 
 fn read(text: &str) -> Result<Specification, StudyError> {
-    Specification::from_toml("study.toml", text, |name| {
-        Err(StudyError::Read {
-            path: PathBuf::from(name),
-            source: std::io::ErrorKind::NotFound.into(),
-        })
-    })
+    Specification::alone("study.toml", text)
 }
 
 fn study(text: &str) -> Specification {
