@@ -61,6 +61,17 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     const resident = Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]) / 1024;
     assert(resident < 600, `${resident} MB after 1200 periods`);
     assert((await measured(page)).rows <= 8001);
+    // A long history is thinned evenly, and the means are those of all rows.
+    const thinned = await page.evaluate(() => {
+      const film = new window.viewer.film.constructor();
+      const rows = Array.from({ length: 262144 }, (_, number) => ({ number, clock: number / 20, flow_rate_ratio: number % 20 }));
+      for (let k = 0; k < rows.length; k += 256) film.addRows(rows.slice(k, k + 256));
+      const gaps = film.rows.slice(1).map((row, k) => row.number - film.rows[k].number);
+      return { first: film.rows[0].number, rows: film.rows.length, each: film.each, widest: Math.max(...gaps),
+        means: film.rows.filter(({ clock, average }) => clock > 1 && Math.abs(average - 9.5) > 1e-9).length };
+    });
+    assert(thinned.first === 0 && thinned.rows > 2000 && thinned.rows <= 8000 && thinned.means === 0, JSON.stringify(thinned));
+    assert(thinned.widest <= thinned.each && thinned.each <= 128, JSON.stringify(thinned));
     // Forces are drawn, and colours are made of them.
     const before = await pixels(page);
     await page.check("#contacts");

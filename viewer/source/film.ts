@@ -6,6 +6,8 @@ const ROWS = 8000;
 /** Frames in the order of time, and the time series beside them. */
 export abstract class Film {
   rows: Row[] = [];
+  /** Of the rows before the last period those are kept whose number is a multiple of this. */
+  private each = 1;
 
   /** Number of frames. */
   abstract get count(): number;
@@ -53,9 +55,21 @@ export abstract class Film {
       this.rows.push({ ...row, friction, average: 0 });
       this.average(this.rows.length - 1);
     }
-    // Every second of the older half goes.
-    const half = this.rows.length >> 1;
-    if (this.rows.length > ROWS) this.rows = this.rows.filter((_, index) => index >= half || index % 2 === 0);
+    if (this.rows.length > ROWS) this.thinRows();
+  }
+
+  /** Lets rows go evenly, so that those from long ago are as near to each other as those from a while ago. */
+  private thinRows(): void {
+    // The means to come are taken of all rows of the last period.
+    const begin = this.rows[this.rows.length - 1].clock - 1;
+    const recent = this.rows.filter(({ clock }) => clock > begin);
+    const thin = (rows: Row[]) => rows.filter(({ number }) => number % this.each === 0);
+    let before = thin(this.rows.slice(0, this.rows.length - recent.length));
+    while (before.length > ROWS / 2) {
+      this.each *= 2;
+      before = thin(before);
+    }
+    this.rows = [...before, ...recent];
   }
 
   private average(last: number): void {

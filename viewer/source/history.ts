@@ -51,10 +51,16 @@ export class History extends Film {
     if (this.bytes > ROOM) this.thin();
   }
 
-  /** Lets every second frame of the older half go. */
+  /** Lets frames go evenly in time, half of them or more; the newest stays. */
   private thin(): void {
-    const half = this.frames.length >> 1;
-    this.frames = this.frames.filter((_, index) => index >= half || index % 2 === 0);
+    const last = this.frames.length - 1;
+    const apart = (2 * (this.frames[last].clock - this.frames[0].clock)) / last;
+    let kept = -Infinity;
+    this.frames = this.frames.filter(({ clock }, index) => {
+      if (clock - kept < apart && index < last) return false;
+      kept = clock;
+      return true;
+    });
     this.bytes = this.frames.reduce((sum, frame) => sum + frame.bytes, 0);
   }
 }

@@ -121,9 +121,9 @@ pub(crate) fn rows(run: &Run, from: usize) -> impl Iterator<Item = Row> {
     samples.map(move |(number, sample)| timeline.row_of(number, sample))
 }
 
-/// Every n-th row, n so that at most [`FIRST_ROWS`] are left.
+/// Every n-th row, n a power of 2, as the page thins them further, so that at most [`FIRST_ROWS`] are left.
 pub(crate) fn thin<T>(rows: impl Iterator<Item = T>) -> Vec<T> {
     let rows: Vec<T> = rows.collect();
-    let each = rows.len().div_ceil(FIRST_ROWS).max(1);
+    let each = rows.len().div_ceil(FIRST_ROWS).next_power_of_two();
     rows.into_iter().step_by(each).collect()
 }
