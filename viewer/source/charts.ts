@@ -242,6 +242,7 @@ export class Chart {
   }
 
   dot(x: number, y: number, radius: number, colour: string, rim: string): void {
+    if (!Number.isFinite(y)) return;
     const { context } = this;
     context.beginPath();
     context.arc(this.x.at(x), this.y.at(y), radius, 0, 2 * Math.PI);

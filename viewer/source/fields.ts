@@ -4,7 +4,7 @@ import type { Frame, Welcome } from "./protocol";
 /** A quantity that colours grains. */
 export interface Field {
   name: string;
-  /** Ends of the scale as they are written below it. */
+  /** Ends of the scale as they are written below it; of some, where they come to be known with the values. */
   ends: [string, string];
   diverging: boolean;
   /** Whether its last value is its first again. */
@@ -15,7 +15,20 @@ export interface Field {
   values(frame: Frame, tube: Welcome, into: Float32Array): void;
 }
 
-const speed = (frame: Frame) => frame.wave_speed || NaN;
+/** Part of the grains whose speed lies within the colours where the wave stands. */
+const COVERED = 0.98;
+
+/** The speed that colours reach to: that of the wave, or where it stands a round one that few grains exceed. */
+export function speedOf({ wave_speed, grains, position, velocity }: Frame): number {
+  if (wave_speed !== 0) return wave_speed;
+  const speeds: number[] = [];
+  for (let i = 0; i < grains; i++)
+    if (!Number.isNaN(position[3 * i])) speeds.push(Math.hypot(velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]));
+  const most = Float64Array.from(speeds).sort()[Math.floor(COVERED * (speeds.length - 1))];
+  if (!(most > 0)) return 1;
+  const power = 10 ** Math.floor(Math.log10(most));
+  return power * ([1, 2, 5].find((it) => it * power >= most) ?? 10);
+}
 
 export const FIELDS: Record<string, Field> = {
   axial: {
@@ -23,7 +36,9 @@ export const FIELDS: Record<string, Field> = {
     ends: ["−c against", "c along"],
     diverging: true,
     values(frame, tube, into) {
-      const scale = tube.heading / speed(frame);
+      const speed = speedOf(frame);
+      this.ends = frame.wave_speed === 0 ? [`−${written(speed)} d/t`, `${written(speed)} d/t`] : ["−c against", "c along"];
+      const scale = tube.heading / speed;
       for (let i = 0; i < into.length; i++) into[i] = scale * frame.velocity[3 * i + 2];
     },
   },
@@ -33,8 +48,10 @@ export const FIELDS: Record<string, Field> = {
     diverging: false,
     values(frame, _, into) {
       const { velocity } = frame;
+      const speed = speedOf(frame);
+      this.ends[1] = frame.wave_speed === 0 ? `${written(speed)} d/t` : "c";
       for (let i = 0; i < into.length; i++)
-        into[i] = Math.hypot(velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]) / speed(frame);
+        into[i] = Math.hypot(velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]) / speed;
     },
   },
   place: {

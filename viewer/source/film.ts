@@ -76,9 +76,12 @@ export abstract class Film {
     let [sum, number] = [0, 0];
     const begin = this.rows[last].clock - 0.999;
     for (let k = last; k >= 0 && this.rows[k].clock > begin; k--) {
-      sum += this.rows[k].flow_rate_ratio ?? 0;
+      const ratio = this.rows[k].flow_rate_ratio;
+      if (ratio === null) continue;
+      sum += ratio;
       number += 1;
     }
+    // Where there is no flow rate its mean is NaN.
     this.rows[last].average = sum / number;
   }
 

@@ -20,9 +20,11 @@ export function drawFlat(canvas: HTMLCanvasElement, frame: Frame, parts: Float32
   context.fillStyle = colours.stageEdge;
   context.fillRect(-half, -height, 2 * half, 2 * height);
   // The wall behind the grains, as wide as its spheres.
+  const [first, last] = [-heading * middle, heading * (length - middle)].sort((a, b) => a - b);
   const edge = (side: number, outside: number) =>
     Array.from({ length: 241 }, (_, k): [number, number] => {
-      const along = -half + (k / 120) * half;
+      const here = -half + (k / 120) * half;
+      const along = tube.open ? Math.min(last, Math.max(first, here)) : here;
       const place = inWave(frame, tube, middle + heading * along) * (radii.length - 1);
       const below = Math.min(radii.length - 2, Math.floor(place));
       const radius = radii[below] + (place - below) * (radii[below + 1] - radii[below]);
@@ -36,7 +38,7 @@ export function drawFlat(canvas: HTMLCanvasElement, frame: Frame, parts: Float32
   }
   const tones = stops(field, lightness);
   // Far ones first.
-  const order = Array.from({ length: frame.grains }, (_, i) => i);
+  const order = Array.from({ length: frame.grains }, (_, i) => i).filter((i) => !Number.isNaN(frame.position[3 * i]));
   order.sort((one, other) => heading * (frame.position[3 * one + 1] - frame.position[3 * other + 1]));
   context.lineWidth = 1.2 / scale;
   context.strokeStyle = colours.stageEdge;
@@ -44,7 +46,8 @@ export function drawFlat(canvas: HTMLCanvasElement, frame: Frame, parts: Float32
     const [x, z, radius] = [frame.position[3 * i], frame.position[3 * i + 2], 0.5 * frame.diameter[i]];
     const along = heading * (z - middle);
     context.fillStyle = css(colourAt(tones, parts[i]));
-    for (let k = Math.ceil((-half - radius - along) / length); k <= (half + radius - along) / length; k++) {
+    const images = tube.open ? [0, 0] : [Math.ceil((-half - radius - along) / length), (half + radius - along) / length];
+    for (let k = images[0]; k <= images[1]; k++) {
       context.beginPath();
       context.arc(along + k * length, x, radius, 0, 2 * Math.PI);
       context.fill();

@@ -74,7 +74,7 @@ export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, 
   const range = (byFriction ? tube.ranges.friction : (tube.ranges.width ?? tube.ranges.force_amplitude)) ?? [0, 1];
   const newtonian = byFriction ? [] : tube.newtonian;
   let [least, most] = [-0.1, 1.05];
-  for (const { average } of rows) [least, most] = [Math.min(least, average), Math.max(most, average)];
+  for (const { average } of rows) if (Number.isFinite(average)) [least, most] = [Math.min(least, average), Math.max(most, average)];
   let [from, to] = [Infinity, -Infinity];
   const see = (value: number) => ([from, to] = [Math.min(from, value), Math.max(to, value)]);
   rows.forEach((row) => see(across.of(row)));
@@ -150,6 +150,6 @@ export function giveLoop(kind: "png" | "svg" | "csv", { canvas }: Chart, film: F
 /** The course as a table. */
 function asTable(rows: Row[], tube: Welcome): string {
   const amplitude = tube.control === "strain" ? "width" : "force_amplitude";
-  const lines = rows.map((row) => [row.clock, row.amplitude, row.strain_rate, row.flow_rate_ratio, row.average].join(","));
+  const lines = rows.map((row) => [row.clock, row.amplitude, row.strain_rate, row.flow_rate_ratio, Number.isFinite(row.average) ? row.average : null].join(","));
   return [`period,${amplitude},strain_rate,flow_rate_ratio,flow_rate_ratio_mean_of_a_period`, ...lines, ""].join("\n");
 }

@@ -10,7 +10,7 @@ import { element, isStillAsked, listenToDialogs, listenToLook, listenToSizes, sa
 import { listenToLooks } from "./looks";
 import { giveLoop } from "./loop";
 import { listenToPointers } from "./pointers";
-import type { Driven, Frame, Told, Welcome } from "./protocol";
+import { type Driven, type Frame, type Told, unitOfTime, type Welcome } from "./protocol";
 import { extent, measuredOf } from "./readings";
 import { isSteady, Readout, showGrain } from "./readout";
 import { Recording } from "./recording";
@@ -128,8 +128,14 @@ class Page {
     this.stage(tube);
     document.title = `${tube.title} – peristalsis`;
     element("title").textContent = tube.title;
+    const [ends, stands] = [tube.open ? "open ends" : "periodic", tube.unit_period === null];
     element("facts").textContent =
-      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"}, periodic · ${tube.control} control${extent(tube)}`;
+      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${stands ? "standing " : ""}${tube.waves === 1 ? "wave" : "waves"}, ${ends} · ${tube.control} control${extent(tube)}`;
+    document.body.dataset.stands = String(stands);
+    element("direction-name").textContent = stands ? "outlet" : "wave";
+    element("direction").hidden = stands && !tube.open;
+    for (const option of element<HTMLSelectElement>("speed").options)
+      if (option.value) option.textContent = `${option.value} ${unitOfTime(tube)}/s`;
     this.sliders.make(tube);
     showWithin(tube);
     this.contactsWanted();
@@ -176,7 +182,7 @@ class Page {
     this.shownFrame = null;
     this.chartsStale = true;
     document.body.dataset.recorded = String(recorded !== null);
-    element("loop-name").textContent = !recorded ? "The loop" : isSteady(this.film, tube) ? "The bottleneck" : "The loop, as it was driven";
+    element("loop-name").textContent = isSteady(this.film, tube) ? "The bottleneck" : recorded ? "The loop, as it was driven" : "The loop";
   }
 
   private missing(number: number, message: string): void {
@@ -310,7 +316,8 @@ class Page {
     if (!frame) return;
     if (frame !== this.shownFrame) {
       if (scene) {
-        if (this.following && scene.picked >= 0) scene.middle = frame.position[3 * scene.picked + 2];
+        const place = this.following && scene.picked >= 0 ? frame.position[3 * scene.picked + 2] : NaN;
+        if (!Number.isNaN(place)) scene.middle = place;
         else if (this.riding) scene.slide(tube.wavelength * ridden(frame.period - this.rode));
         scene.show(frame, FIELDS[this.field]);
       }
@@ -331,7 +338,7 @@ class Page {
     const speed = tube.recorded ? this.speed : (newest ?? frame).speed;
     const [index, playing, live] = [this.shown(), this.playing(), this.cursor === null];
     this.readout.show({ frame, index, newest, film, tube, scene, field, playing, live, speed, chapter }, this.ticked);
-    if (FIELDS[field].ofContacts || scene?.contacts) this.showLegend();
+    this.showLegend();
   }
 
   private showLegend(): void {
@@ -438,7 +445,7 @@ class Page {
 
   /** Computes on from another time, after a question: what came later is given up. */
   private async goOn(period: number, question: string, answer: string): Promise<void> {
-    if (!(await givesUp(period, this.newest()?.clock ?? 0, question, answer))) return;
+    if (!(await givesUp(period, this.newest()?.clock ?? 0, this.tube ? unitOfTime(this.tube) : "T", question, answer))) return;
     this.sweep.end();
     this.connection.send({ type: "seek", period });
   }

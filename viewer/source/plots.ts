@@ -1,7 +1,7 @@
-import type { Chart, Entry, Ink } from "./charts";
-import { colourAt, type Field, inWave, stops } from "./fields";
+import { type Chart, type Entry, type Ink, written } from "./charts";
+import { colourAt, type Field, inWave, speedOf, stops } from "./fields";
 import type { Film } from "./film";
-import type { Frame, Welcome } from "./protocol";
+import { type Frame, unitOfTime, type Welcome } from "./protocol";
 
 /** Frames that a profile is averaged over, and looks at grains after which fewer frames do. */
 const AVERAGED = 16;
@@ -20,7 +20,7 @@ export function drawFlow(chart: Chart, film: Film, tube: Welcome, clock: number,
   const end = Math.max(rows.at(-1)?.clock ?? 0, ahead, recorded?.at(-1) ?? 0);
   const last = recorded ? end : Math.max(end, 2);
   let [least, most] = [-0.1, 1.05];
-  for (const { average } of rows) [least, most] = [Math.min(least, average), Math.max(most, average)];
+  for (const { average } of rows) if (Number.isFinite(average)) [least, most] = [Math.min(least, average), Math.max(most, average)];
   const legend: Entry[] = [
     { text: "each sample", colour: colours.line },
     { text: "mean over the period before", colour: colours.accent },
@@ -58,15 +58,16 @@ function sparse(points: [number, number][]): [number, number][] {
 }
 
 /** The bottleneck against time, with the time that is shown; false where it is not known. */
-export function drawBottleneck(chart: Chart, film: Film, clock: number, colours: Ink): boolean {
+export function drawBottleneck(chart: Chart, film: Film, tube: Welcome, clock: number, colours: Ink): boolean {
   const points = film.rows.map((row): [number, number] => [row.clock, row.bottleneck ?? NaN]);
   const known = points.map(([, bottleneck]) => bottleneck).filter(Number.isFinite);
   if (known.length === 0) return false;
   const [least, most] = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
   const room = Math.max(0.15 * (most - least), 0.05);
   const last = points[points.length - 1][0];
-  chart.begin([0, last], [least - room, most + room], ["time / periods T", "narrowest place w / d"], colours);
-  chart.curve(sparse(points), colours.accent, 2);
+  chart.begin([0, last], [least - room, most + room], [unitOfTime(tube) === "T" ? "time / periods T" : "time / t", "narrowest place w / d"], colours);
+  // The rows of a standing wave are as far apart in t as one likes.
+  chart.curve(tube.unit_period === null ? points : sparse(points), colours.accent, 2);
   chart.upright(Math.min(clock, last), colours.text);
   const at = points.findLastIndex(([time]) => time <= clock + 1e-9);
   if (at >= 0) chart.dot(...points[at], 4, colours.accent, colours.back);
@@ -77,6 +78,8 @@ export function drawBottleneck(chart: Chart, film: Film, clock: number, colours:
 export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welcome, colours: Ink): void {
   const grains = film.frame(shown)?.grains ?? tube.grains;
   const frames = film.recent(shown, Math.min(AVERAGED, Math.ceil(LOOKS / grains)));
+  const last = frames.at(-1);
+  const standing = last?.wave_speed === 0 ? speedOf(last) : null;
   const number = new Float64Array(BINS);
   const volume = new Float64Array(BINS);
   const velocity = new Float64Array(BINS);
@@ -85,14 +88,14 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
       const bin = Math.min(BINS - 1, Math.floor(BINS * inWave(frame, tube, frame.position[3 * i + 2])));
       number[bin] += 1;
       volume[bin] += (Math.PI / 6) * frame.diameter[i] ** 3;
-      velocity[bin] += (tube.heading * frame.velocity[3 * i + 2]) / (frame.wave_speed || NaN);
+      velocity[bin] += (tube.heading * frame.velocity[3 * i + 2]) / (standing ?? (frame.wave_speed || NaN));
     }
   }
   // A mean over a handful of looks at grains is none.
   const means = Array.from(velocity, (sum, bin) => (number[bin] >= FEWEST ? sum / number[bin] : NaN));
   const least = Math.min(-0.25, ...means.filter(Number.isFinite));
   const legend = [
-    { text: "mean velocity ⟨v_z⟩/c", colour: colours.accent },
+    { text: `mean axial velocity/${standing === null ? "c" : `(${written(standing)} d/t)`}`, colour: colours.accent },
     { text: "volume fraction φ", colour: colours.text, dash: [2, 3] },
     { text: "tube", colour: colours.wall },
   ];
@@ -198,7 +201,7 @@ export function drawMap(
   context.strokeStyle = colours.text;
   context.lineWidth = 1.5;
   if (half < 0.49) {
-    for (const turn of [-1, 0, 1])
+    for (const turn of tube.open ? [0] : [-1, 0, 1])
       context.strokeRect((centre - half + turn) * width, 0.75, 2 * half * width, height - 1.5);
   }
 }

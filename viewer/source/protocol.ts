@@ -27,6 +27,8 @@ export interface Welcome {
   control: "strain" | "stress";
   grains: number;
   length: number;
+  /** Whether grains leave the tube at its ends; otherwise it is periodic. */
+  open: boolean;
   wavelength: number;
   waves: number;
   radius: number;
@@ -35,7 +37,8 @@ export interface Welcome {
   wall_sphere_diameter: number;
   heading: number;
   reach: number;
-  unit_period: number;
+  /** Duration of a period, the unit of every clock; null where the wave stands, and clocks tell t. */
+  unit_period: number | null;
   ranges: Record<Steered, Range>;
   /** J/Jmax of a Newtonian fluid by the width. */
   newtonian: [number, number][];
@@ -48,6 +51,9 @@ export interface Welcome {
   /** The study that it was opened from. */
   within: { study: string; number: number; siblings: { number: number; replicate: number }[] } | null;
 }
+
+/** The unit of clocks. */
+export const unitOfTime = ({ unit_period }: Welcome): "T" | "t" => (unit_period === null ? "t" : "T");
 
 export interface Saved {
   type: "saved";
@@ -117,6 +123,9 @@ export interface Head {
     bottleneck: number;
     wall_power: number;
     energy_residual: number | null;
+    /** Of an open tube, as is the next. */
+    discharge_rate: number | null;
+    hold_up: number | null;
   } | null;
   /** What is doubtful of the run so far, each with the key to change. */
   warnings: { key: string; message: string }[];
@@ -125,6 +134,7 @@ export interface Head {
 /** The spheres at one time; vectors as x y z x y z ... in the frame of the tube. */
 export interface Frame extends Head {
   bytes: number;
+  /** NaN of a grain that waits outside an open tube. */
   position: Float32Array;
   velocity: Float32Array;
   diameter: Float32Array;

@@ -1,7 +1,7 @@
 /** Numbers of a frame in words: names with values. */
 import { written } from "./charts";
 import { inWave } from "./fields";
-import type { Driven, Frame, Steered, Welcome } from "./protocol";
+import { type Driven, type Frame, type Steered, unitOfTime, type Welcome } from "./protocol";
 
 type Facts = [string, string][];
 
@@ -13,8 +13,13 @@ export function extent({ recorded }: Welcome): string {
 }
 
 /** The sample that was taken last. */
-export function factsOfSample({ sample }: Frame): Facts {
+export function factsOfSample({ sample }: Frame, tube: Welcome): Facts {
+  const ends: Facts = [
+    ["discharge rate", sample ? `${written(sample.discharge_rate ?? NaN)} m/t` : "–"],
+    ["hold-up", sample ? `${written(sample.hold_up ?? NaN, 4)} m` : "–"],
+  ];
   return [
+    ...(tube.open ? ends : []),
     ["narrowest place w", sample ? `${written(sample.bottleneck)} d` : "–"],
     ["contacts of a grain Z", sample ? written(sample.contacts) : "–"],
     ["granular temperature", sample ? `${written(sample.granular_temperature)} m d²/t²` : "–"],
@@ -28,15 +33,19 @@ export function factsOfSample({ sample }: Frame): Facts {
 export function factsOfGrain(frame: Frame, tube: Welcome, grain: number): Facts {
   const [x, y, z] = frame.position.subarray(3 * grain, 3 * grain + 3);
   const [vx, vy, vz] = frame.velocity.subarray(3 * grain, 3 * grain + 3);
-  const c = frame.wave_speed || NaN;
-  const facts: Facts = [
+  const [c, unit] = frame.wave_speed === 0 ? [1, "d/t"] : [frame.wave_speed, "c"];
+  const itself: Facts = [
     ["grain", String(grain)],
     ["diameter dᵢ", `${written(frame.diameter[grain])} d`],
+  ];
+  if (Number.isNaN(x)) return [...itself, ["place", "waits outside"]];
+  const facts: Facts = [
+    ...itself,
     ["from the axis", `${written(Math.hypot(x, y))} d`],
     ["along the tube", `${written(z, 4)} d`],
     ["place in the wave", `${written(inWave(frame, tube, z))} λ`],
-    ["along the wave", `${written((tube.heading * vz) / c)} c`],
-    ["speed", `${written(Math.hypot(vx, vy, vz) / c)} c`],
+    ["along the wave", `${written((tube.heading * vz) / c)} ${unit}`],
+    ["speed", `${written(Math.hypot(vx, vy, vz) / c)} ${unit}`],
   ];
   if (frame.turning) {
     const spin = frame.spin.subarray(3 * grain, 3 * grain + 3);
@@ -69,11 +78,15 @@ function digest(frame: Frame): number {
   return sum;
 }
 
+/** The unit of clocks, for who does not see the page. */
+export const inWords = (tube: Welcome): string => (unitOfTime(tube) === "T" ? "periods" : "units of time");
+
 /** The state in a sentence, for who does not see the page. */
-export function summaryOf(frame: Frame, ratio: number): string {
+export function summaryOf(frame: Frame, tube: Welcome, ratio: number): string {
   const { width, force_amplitude } = frame.driven;
   const drive = width !== null ? `width ${written(width)}` : force_amplitude !== null ? `force ${written(force_amplitude)}` : "";
-  return `${frame.clock.toFixed(1)} periods: flow rate ${written(ratio, 2)} of the largest, ${drive}${frame.playing ? "" : ", at rest"}`;
+  const flow = Number.isNaN(ratio) ? "" : `flow rate ${written(ratio, 2)} of the largest, `;
+  return `${frame.clock.toFixed(1)} ${inWords(tube)}: ${flow}${drive}${frame.playing ? "" : ", at rest"}`;
 }
 
 /** What tests look at of a frame. */

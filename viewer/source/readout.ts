@@ -5,8 +5,8 @@ import { drawFlat } from "./flat";
 import { acrossOf, drawLoop, thresholds, wordsOf } from "./loop";
 import { element, fill } from "./page";
 import { drawBottleneck, drawFlow, drawMap, drawProfile } from "./plots";
-import type { Frame, Welcome } from "./protocol";
-import { factsOfDrive, factsOfGrain, factsOfSample, summaryOf } from "./readings";
+import { type Frame, unitOfTime, type Welcome } from "./protocol";
+import { factsOfDrive, factsOfGrain, factsOfSample, inWords, summaryOf } from "./readings";
 import type { Scene } from "./scene";
 import type { Sliders } from "./sliders";
 import { FEWEST_WAVES, SpaceTime } from "./space-time";
@@ -55,7 +55,7 @@ export class Readout {
     const { charts } = this;
     drawFlow(charts.flow, film, tube, frame.clock, colours);
     if (!isSteady(film, tube)) this.showLoop(shown);
-    else element("loop-figure").hidden = !drawBottleneck(charts.loop, film, frame.clock, colours);
+    else element("loop-figure").hidden = !drawBottleneck(charts.loop, film, tube, frame.clock, colours);
     drawProfile(charts.profile, film, index, tube, colours);
     const isLong = tube.waves >= FEWEST_WAVES && !tube.recorded;
     element("space-time-figure").hidden = !isLong;
@@ -81,44 +81,44 @@ export class Readout {
     element("ratio").textContent = Number.isNaN(ratio) ? "–" : ratio.toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "");
     if (chapter === "friction" && frame.clock > 1) tell(ratio < -0.01 ? "The grains flow against the wave." : `J/Jmax = ${written(ratio, 2)}`);
     if (chapter === "begins") tell(this.spaceTime.words());
-    element("clock").textContent = `${frame.clock.toFixed(2)} T`;
+    element("clock").textContent = `${frame.clock.toFixed(2)} ${unitOfTime(tube)}`;
     const slider = element<HTMLInputElement>("time");
     slider.value = String(index);
-    slider.setAttribute("aria-valuetext", `${frame.clock.toFixed(2)} periods`);
+    slider.setAttribute("aria-valuetext", `${frame.clock.toFixed(2)} ${inWords(tube)}`);
     element("live").dataset.live = String(live);
     element("play").setAttribute("aria-pressed", String(playing));
     element("onward").hidden = live || tube.recorded !== null;
     const select = element<HTMLSelectElement>("speed");
     if (select !== document.activeElement) select.value = speed === null ? "" : String(speed);
-    this.showPace(newest, speed, now);
+    this.showPace(newest, tube, speed, now);
     const driven = newest ?? frame;
     this.sliders.show(driven.driven, driven.aims);
-    const facts = factsOfSample(frame);
+    const facts = factsOfSample(frame, tube);
     fill(element("numbers"), tube.recorded ? [...factsOfDrive(frame.driven), ...facts] : facts);
     fill(element("warnings"), frame.warnings.map(({ key, message }) => [key, message]));
     showGrain(frame, tube, scene?.picked ?? -1);
     if (now - this.summarised > SUMMARIES) {
       this.summarised = now;
-      element("summary").textContent = summaryOf(frame, ratio);
+      element("summary").textContent = summaryOf(frame, tube, ratio);
     }
   }
 
   /** How fast it really goes, where that is not what was asked for. */
-  private showPace(newest: Frame | undefined, asked: number | null, now: number): void {
+  private showPace(newest: Frame | undefined, tube: Welcome, asked: number | null, now: number): void {
     const [since, clock] = this.measuredFrom;
     if (now - since < 1000) return;
     const reached = newest?.clock ?? 0;
     const pace = ((reached - clock) / (now - since)) * 1000;
     this.measuredFrom = [now, reached];
     const tells = newest?.playing && since > 0 && pace > 0 && (asked === null || pace < 0.8 * asked);
-    element("pace").textContent = tells ? `now ${written(pace, 2)} T/s` : "";
+    element("pace").textContent = tells ? `now ${written(pace, 2)} ${unitOfTime(tube)}/s` : "";
   }
 }
 
-/** Whether a recording has no loop, for nothing was driven. */
+/** Whether there is no loop: the wave stands, which has no largest flow, or nothing was driven in a recording. */
 export function isSteady({ rows }: Film, tube: Welcome): boolean {
   const [first] = rows;
-  return tube.recorded !== null && rows.every((row) => row.amplitude === first.amplitude);
+  return tube.unit_period === null || (tube.recorded !== null && rows.every((row) => row.amplitude === first.amplitude));
 }
 
 /** The numbers of the grain that was picked. */

@@ -119,7 +119,8 @@ export class Scene {
   /** From a little above: two waves across, one and a half on a phone, and the tube from top to bottom. */
   home(): void {
     const narrow = this.canvas.clientWidth < 600;
-    const shown = (narrow ? 1.25 : 2) * this.tube.wavelength;
+    const most = (narrow ? 1.25 : 2) * this.tube.wavelength;
+    const shown = this.tube.open ? Math.min(most, 1.35 * this.tube.length) : most;
     const slope = Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180);
     const distance = (0.5 * shown) / (slope * this.camera.aspect);
     const least = (1.25 * this.tube.radius) / slope;
@@ -304,11 +305,12 @@ export class Scene {
     return Math.min(oblique * this.halfShown(), LONGEST * this.tube.radius);
   }
 
-  /** Where something at z appears along the picture: the tube is periodic. */
+  /** Where something at z appears along the picture: again and again, or once where the ends of the tube are open. */
   private images(): Images {
-    const { heading, length } = this.tube;
+    const { heading, length, open } = this.tube;
     const { middle } = this;
     const last = this.halfSeen();
+    if (open) return { first: (z) => heading * (z - middle), last, each: Infinity };
     return { first: (z) => along(heading * (z - middle)), last, each: length };
 
     function along(place: number): number {
@@ -375,9 +377,10 @@ export class Scene {
       const round = Math.min(3, each);
       const on = Math.ceil(each / round);
       const rings = tube.rings_per_wave * tube.waves;
-      const first = on * Math.ceil((this.middle - half) / spacing / on);
-      const last = Math.floor((this.middle + half) / spacing);
-      wallSpheres.reserve(((last - first) / on + 2) * (tube.spheres_per_ring / round + 1));
+      const [from, to] = tube.open ? [0, rings - 1] : [-Infinity, Infinity];
+      const first = on * Math.ceil(Math.max(from, (this.middle - half) / spacing) / on);
+      const last = Math.floor(Math.min(to, (this.middle + half) / spacing));
+      wallSpheres.reserve((Math.max(0, last - first) / on + 2) * (tube.spheres_per_ring / round + 1));
       for (let unfolded = first; unfolded <= last; unfolded += on) {
         const ring = ((unfolded % rings) + rings) % rings;
         const radius = frame.ringRadius[ring % tube.rings_per_wave];
@@ -418,13 +421,15 @@ export class Scene {
     const { frame, picked, tube } = this;
     if (!frame) return -1;
     const place = (i: number) => tube.heading * frame.position[3 * i + 2];
-    const from = picked < 0 ? tube.heading * this.middle : place(picked);
+    const isSeen = picked >= 0 && !Number.isNaN(place(picked));
+    const from = isSeen ? place(picked) : tube.heading * this.middle;
     let [best, found] = [Infinity, -1];
     for (let i = 0; i < frame.grains; i++) {
       const ahead = place(i) - from;
       const round = ((ahead % tube.length) + tube.length) % tube.length;
-      const away = picked < 0 ? Math.min(round, tube.length - round) : round;
-      if (i === picked || away >= best) continue;
+      const away = isSeen ? round : Math.min(round, tube.length - round);
+      // One that waits outside is nowhere.
+      if (i === picked || !(away < best)) continue;
       [best, found] = [away, i];
     }
     return found;

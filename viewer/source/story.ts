@@ -20,10 +20,10 @@ export function tell(text: string): void {
 }
 
 /** Asks before what came after a time is given up, which nobody can bring back. */
-export function givesUp(period: number, newest: number, question: string, answer: string): Promise<boolean> {
+export function givesUp(period: number, newest: number, unit: string, question: string, answer: string): Promise<boolean> {
   const dialog = element<HTMLDialogElement>("confirm");
   element("confirm-text").textContent =
-    `${question} What came after ${written(period)} T, up to ${written(newest)} T, is given up: the loop and the frames.`;
+    `${question} What came after ${written(period)} ${unit}, up to ${written(newest)} ${unit}, is given up: the loop and the frames.`;
   element("confirm-yes").textContent = answer;
   dialog.returnValue = "";
   dialog.showModal();

@@ -11,8 +11,11 @@
 //! | 12 W or 4 R | centres of the wall's spheres, or radii of the rings of one wavelength where the page knows the rest |
 //! | 24 C | contacts: grain, partner or -1 for the wall, x y z of the partner (the point where the wall is touched), normal force |
 //!
-//! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube.
+//! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube. A grain that waits outside an
+//! open tube is nowhere: its centre is NaN.
 
+#[cfg(feature = "server")]
+use peristalsis_configuration::Ends;
 use peristalsis_engine::{Bodies, Touching, Wall};
 #[cfg(feature = "server")]
 use peristalsis_formats::Frame;
@@ -22,6 +25,10 @@ use peristalsis_run::{Run, Warning};
 use serde::Serialize;
 
 use crate::timeline::{Driven, Row, Timeline};
+
+/// Mean radii of an open tube from its axis beyond which grains of a recording wait: the engine puts them farther away.
+#[cfg(feature = "server")]
+const WAITING: f64 = 3.0;
 
 /// The head of a frame.
 #[derive(Clone, Debug, Serialize)]
@@ -105,6 +112,9 @@ pub(crate) struct Shown {
     bottleneck: f64,
     wall_power: f64,
     energy_residual: f64,
+    /// Of an open tube, as is the next.
+    discharge_rate: f64,
+    hold_up: f64,
 }
 
 impl From<&Sample> for Shown {
@@ -118,6 +128,8 @@ impl From<&Sample> for Shown {
             bottleneck: sample.bottleneck,
             wall_power: sample.wall_power,
             energy_residual: sample.energy_residual,
+            discharge_rate: sample.discharge_rate,
+            hold_up: sample.hold_up,
         }
     }
 }
@@ -151,7 +163,11 @@ pub(crate) fn of_run(head: &Head, run: &Run, contacts: &[f64]) -> Vec<u8> {
         angular_velocity,
         ..
     } = run.simulation().bodies();
-    let [of_grains, mobile] = [&position[..*grains], &position[*grains..]];
+    let mobile = &position[*grains..];
+    let mut of_grains = flat(&position[..*grains]);
+    if let Some(ends) = run.simulation().ends() {
+        hide(&mut of_grains, |grain, _| ends.waits(grain));
+    }
     let spin = if head.turning {
         &angular_velocity[..*grains]
     } else {
@@ -166,7 +182,7 @@ pub(crate) fn of_run(head: &Head, run: &Run, contacts: &[f64]) -> Vec<u8> {
     }
     let rings = radii(wall);
     let arrays: [&[f64]; 7] = [
-        &flat(of_grains),
+        &of_grains,
         &flat(&velocity[..*grains]),
         &diameter[..*grains],
         &flat(spin),
@@ -202,8 +218,8 @@ pub(crate) fn of_wall(wall: &Wall) -> (usize, usize) {
 }
 
 #[cfg(feature = "server")]
-/// A recorded frame of a run with such a wall.
-pub(crate) fn of_recording(head: &Head, frame: &Frame, wall: &Wall) -> Vec<u8> {
+/// A recorded frame of a run with such a wall, and with such ends.
+pub(crate) fn of_recording(head: &Head, frame: &Frame, wall: &Wall, ends: Ends) -> Vec<u8> {
     let grains = frame.grains;
     let spin = frame.rotation.as_ref();
     let per_ring = wall.lattice().map_or(0, |it| it.spheres_per_ring) as usize;
@@ -217,8 +233,13 @@ pub(crate) fn of_recording(head: &Head, frame: &Frame, wall: &Wall) -> Vec<u8> {
             .collect(),
     };
     let of_wall = &frame.position[frame.position.len() - head.wall_spheres..];
-    let arrays = [
-        frame.position[..grains].as_flattened(),
+    let mut of_grains = frame.position[..grains].as_flattened().to_vec();
+    if ends == Ends::Open {
+        let far = WAITING * wall.mean_radius();
+        hide(&mut of_grains, |_, [x, y, _]| x.hypot(*y) > far);
+    }
+    let arrays: [&[f64]; 7] = [
+        &of_grains,
         frame.velocity[..grains].as_flattened(),
         &frame.diameter[..grains],
         spin.map_or(&[], |it| it.angular_velocity.as_flattened()),
@@ -227,6 +248,16 @@ pub(crate) fn of_recording(head: &Head, frame: &Frame, wall: &Wall) -> Vec<u8> {
         &[],
     ];
     encode(head, arrays)
+}
+
+/// Takes the place from the grains that wait.
+fn hide(centres: &mut [f64], waits: impl Fn(usize, &[f64; 3]) -> bool) {
+    let (centres, _) = centres.as_chunks_mut::<3>();
+    for (grain, centre) in centres.iter_mut().enumerate() {
+        if waits(grain, centre) {
+            *centre = [f64::NAN; 3];
+        }
+    }
 }
 
 fn flat<Vector: Copy + Into<[f64; 3]>>(vectors: &[Vector]) -> Vec<f64> {

@@ -68,7 +68,7 @@ impl Driven {
 pub(crate) struct Timeline<'a>(pub(crate) &'a Configuration);
 
 impl Timeline<'_> {
-    /// Duration of a period at the strain rate of the drive.
+    /// Duration of a period at the strain rate of the drive; 1 t where the wave stands.
     pub(crate) fn unit_period(self) -> f64 {
         self.0.drive.period().unwrap_or(1.0)
     }

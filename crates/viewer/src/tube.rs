@@ -252,9 +252,8 @@ impl Tube {
             self.course.mark_now_and_then(&mut self.run);
             if self.run.recorder().samples().len() >= MOST_ROWS {
                 (self.ended, self.playing) = (true, false);
-                let periods = self.clock_now();
                 self.tell(&format!(
-                    "{periods:.0} periods are as many as a watched run keeps: save this state and go on with \
+                    "{MOST_ROWS} samples are as many as a watched run keeps: save this state and go on with \
                      `peristalsis run --resume`, or go back in time"
                 ));
             }

@@ -1,6 +1,6 @@
 //! The first message to the page of a run.
 
-use peristalsis_configuration::Control;
+use peristalsis_configuration::{Control, Ends};
 use peristalsis_engine::Wall;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 use peristalsis_run::{Configuration, VERSION};
@@ -19,6 +19,8 @@ pub(crate) struct Welcome {
     control: &'static str,
     grains: usize,
     length: f64,
+    /// Whether grains leave the tube at its ends; otherwise it is periodic.
+    open: bool,
     wavelength: f64,
     waves: u32,
     radius: f64,
@@ -28,8 +30,9 @@ pub(crate) struct Welcome {
     heading: f64,
     /// Largest expected radius.
     reach: f64,
-    /// Duration of a period at the strain rate of the drive.
-    unit_period: f64,
+    /// Duration of a period at the strain rate of the drive, the unit of every clock; null where the wave stands, and clocks
+    /// tell t.
+    unit_period: Option<f64>,
     pub(crate) ranges: Ranges,
     /// J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed.
     newtonian: Vec<(f64, f64)>,
@@ -118,6 +121,7 @@ impl Welcome {
             },
             grains,
             length: wall.length(),
+            open: configuration.tube.ends == Ends::Open,
             wavelength: wall.wavelength(),
             waves: wall.waves(),
             radius: configuration.tube.radius,
@@ -128,7 +132,7 @@ impl Welcome {
             wall_sphere_diameter: wall.sphere_diameter(),
             heading: wall.heading(),
             reach: 2.0 * configuration.tube.radius,
-            unit_period: timeline.unit_period(),
+            unit_period: configuration.drive.period(),
             newtonian: newtonian(&ranges, configuration.tube.radius),
             ranges,
             driven: timeline.driven(0.0),

@@ -135,7 +135,8 @@ impl Recording {
             sample: sample.map(Into::into),
             warnings: self.warnings.clone(),
         };
-        Ok(of_recording(&head, &frame, &self.wall))
+        let ends = self.configuration.tube.ends;
+        Ok(of_recording(&head, &frame, &self.wall, ends))
     }
 
     /// Whether a frame is of this run.

@@ -280,3 +280,24 @@ fn a_course_takes_another_run_to_the_same_state() {
     let here = client.frame_with(|head| head["clock"] == 2.0);
     assert_eq!(here.numbers, there.numbers);
 }
+
+#[test]
+fn grains_that_wait_outside_an_open_tube_are_nowhere() {
+    let settings = ["grains.number=300", "inlet.waiting=120"];
+    let served = Served::new("silo", &settings);
+    let (mut client, welcome) = served.client();
+    assert_eq!(welcome["open"], true);
+    assert!(welcome["unit_period"].is_null(), "{welcome}");
+    let frame = client.frame();
+    let centres = frame.numbers[..900].chunks(3);
+    let waiting = centres.clone().filter(|centre| centre[0].is_nan()).count();
+    // Those of the inlet, and those that began in the gap between the ends.
+    assert!((120..160).contains(&waiting), "{waiting} wait");
+    let mut inside = centres.filter(|centre| !centre[0].is_nan());
+    assert!(inside.all(|centre| centre[0].hypot(centre[1]) < 8.0));
+    client.send(r#"{"type":"speed","periods_per_second":null}"#);
+    client.send(r#"{"type":"play","playing":true}"#);
+    let later = client.frame_with(|head| !head["sample"].is_null());
+    assert!(later.head["sample"]["hold_up"].as_f64().unwrap() > 0.0);
+    assert!(later.head["sample"]["discharge_rate"].is_number());
+}

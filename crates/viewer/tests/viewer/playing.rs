@@ -278,3 +278,19 @@ fn a_recording_has_the_warnings_of_its_run() {
     let expected: Vec<_> = whole.iter().map(|it| it.key.to_owned()).collect();
     assert_eq!(keys(recording.with_warnings(whole)), expected);
 }
+
+#[test]
+fn recorded_grains_that_wait_outside_are_nowhere() {
+    let settings = ["tube.waves=4", "tube.ends=open", "inlet.waiting=20"];
+    let recorded = Recorded::new("frictionless", &settings);
+    let ends = recorded.run.simulation().ends().unwrap();
+    let grains = recorded.run.simulation().bodies().grains;
+    let waits: Vec<bool> = (0..grains).map(|grain| ends.waits(grain)).collect();
+    assert!(waits.contains(&true) && waits.contains(&false));
+    let served = recorded.serve();
+    let (mut client, _) = served.client();
+    let last = frame(&mut client, 8);
+    let centres = last.numbers[..3 * grains].chunks(3);
+    let nowhere: Vec<bool> = centres.map(|centre| centre[0].is_nan()).collect();
+    assert_eq!(nowhere, waits);
+}
