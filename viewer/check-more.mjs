@@ -105,6 +105,22 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     await page.click("#onward");
     await page.click("#confirm-yes");
     await until(page, (shown) => Math.abs(window.viewer.measured.clock - shown) < 1e-6, shown);
+    // A sweep ends before the samples that a run can have, there and back; it ends too where the run is halted.
+    await page.evaluate(() => (window.viewer.tube.most_samples = window.viewer.film.rows.at(-1).number + 100000));
+    await page.click("#sweep");
+    await until(page, () => document.getElementById("sweep").ariaPressed === "true" && window.viewer.measured.playing);
+    await until(page, () => document.getElementById("sweep").ariaPressed === "false");
+    await until(page, () => window.viewer.newest().aims.width === 3);
+    const swept = await page.evaluate(() => {
+      const { film, tube } = window.viewer;
+      return { least: Math.min(...film.rows.map(({ amplitude }) => amplitude)), left: tube.most_samples - film.rows.at(-1).number };
+    });
+    assert(swept.least < 2.45 && swept.left > 0, JSON.stringify(swept));
+    await page.evaluate(() => (window.viewer.tube.most_samples = 262144));
+    await page.click("#sweep");
+    await until(page, () => window.viewer.measured.playing);
+    await page.click("#play");
+    await until(page, () => document.getElementById("sweep").ariaPressed === "false");
     // The loop as files.
     for (const kind of ["png", "svg", "csv"]) await page.click(`#loop-${kind}`);
     await until(page, () => [...window.offered.values()].length >= 3);

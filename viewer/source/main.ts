@@ -6,7 +6,7 @@ import type { Film } from "./film";
 import { History } from "./history";
 import { Host, isHosted } from "./host";
 import { listenToKeys } from "./keys";
-import { element, isStillAsked, listenToDialogs, listenToLook, listenToSizes, say } from "./page";
+import { element, isStillAsked, keepSaid, listenToDialogs, listenToLook, listenToSizes, say } from "./page";
 import { listenToLooks } from "./looks";
 import { giveLoop } from "./loop";
 import { listenToPointers } from "./pointers";
@@ -85,7 +85,7 @@ class Page {
       eye: this.scene?.eye ?? [], middle: this.scene?.middle ?? 0, field: this.field, wall: this.scene?.wall ?? WALLS[0],
       clock: this.shownFrame?.clock ?? 0, playing: this.shownFrame?.playing ?? false,
     }));
-    this.sweep = new Sweep(this.connection, () => this.connection.send({ type: "play", playing: false }));
+    this.sweep = new Sweep(this.connection, () => this.film.rows.at(-1)?.number ?? 0, () => this.connection.send({ type: "play", playing: false }));
     if (new URLSearchParams(location.hash.slice(1)).has("embed")) document.body.dataset.embed = "true";
     if (alone) element("tubes").replaceChildren(choice(wanted(), (tube) => this.openTube(tube)));
     listenToChapters((chapter) => this.begin(chapter));
@@ -99,7 +99,7 @@ class Page {
     else if (message.type === "missing") this.missing(message.number, message.message);
     else if (message.type === "course") this.address.take(message);
     else {
-      say(message.message, true);
+      say(message.message, true, this.newest()?.ended);
       if (!this.tube) element("facts").textContent = message.message;
     }
   }
@@ -197,11 +197,14 @@ class Page {
       return;
     }
     if (!(this.film instanceof History) || !this.tube) return;
-    const epoch = this.film.newest?.epoch;
+    const { epoch, playing, ended } = this.film.newest ?? {};
     this.film.add(frame);
     this.readout.spaceTime.see(frame, this.tube);
     if (frame.past) return;
     if (epoch !== undefined && epoch !== frame.epoch) this.cursor = null;
+    // Also where the run has stopped by itself; what the server said of it stays until the run goes on.
+    if (playing && !frame.playing) this.sweep.end();
+    if (frame.ended !== (ended ?? false)) keepSaid(frame.ended);
     if (typeof this.asked.clock === "number") {
       const index = this.film.at(this.asked.clock);
       if (index < this.film.count - 1) this.cursor = index;
@@ -411,7 +414,7 @@ class Page {
     element("help").onclick = () => element<HTMLDialogElement>("keys").showModal();
     element("onward").onclick = () => void this.goOn(this.film.clock(this.shown()), "Go on from here?", "go on from here");
     element("again").onclick = () => void this.goOn(0, "Begin anew?", "from the start");
-    element("sweep").onclick = () => (this.sweep.isGoing ? this.sweep.end() : this.tube && this.sweep.begin(this.tube));
+    element("sweep").onclick = () => (this.sweep.isGoing ? this.sweep.end() : this.tube && !this.newest()?.ended && this.sweep.begin(this.tube));
     listenToShare(this.address, () => this.tube?.title ?? "tube", () => this.scene?.touch());
     for (const kind of ["png", "svg", "csv"] as const) element(`loop-${kind}`).onclick = () => this.tube && this.shownFrame && giveLoop(kind, this.readout.charts.loop, this.film, this.tube, this.shownFrame);
     element("grain-close").onclick = () => this.pick(-1);

@@ -53,7 +53,17 @@ export function say(text: string, trouble = false, lasting = false): void {
   box.textContent = text;
   box.hidden = text === "";
   box.dataset.trouble = String(trouble);
-  if (text && trouble && !lasting) setTimeout(() => box.textContent === text && (box.hidden = true), 8000);
+  clearTimeout(going);
+  if (text && trouble && !lasting) going = window.setTimeout(() => (box.hidden = true), 8000);
+}
+
+/** The timer by which what is said goes. */
+let going = 0;
+
+/** Keeps what is said, or lets it go. */
+export function keepSaid(keeps: boolean): void {
+  clearTimeout(going);
+  if (!keeps) element("status").hidden = true;
 }
 
 /** Follows the sizes of the stage and the charts. */

@@ -46,6 +46,8 @@ export interface Welcome {
   record: [number, number | null][];
   rows: Row[];
   end: number;
+  /** Samples after which a watched run stops. */
+  most_samples: number;
   /** The frames of a recording; null where the run is computed. */
   recorded: { clocks: number[]; lost_frames: number } | null;
   /** The study that it was opened from. */

@@ -4,8 +4,12 @@ import type { Steered, Welcome } from "./protocol";
 
 /** Seconds that the way there and back takes. */
 const MINUTE = 60;
-/** Milliseconds from one step of the way to the next. */
-const EACH = 400;
+/** Part of the samples that a run can have which it takes at most, or of those that are left. */
+const SHARE = 0.25;
+const REST = 0.9;
+/** Parts of the way, and milliseconds from one look at the place to the next. */
+const STEPS = 150;
+const EACH = 40;
 /** From where to where, of what drives the tube; what is known to jam and what is known to let go lie between. */
 const WAYS: Record<Welcome["control"], [Steered, number, number]> = {
   strain: ["width", 3, 2.4],
@@ -16,8 +20,8 @@ const WAYS: Record<Welcome["control"], [Steered, number, number]> = {
 export class Sweep {
   private timer = 0;
 
-  /** `ended` is called when it comes back, and when it is stopped. */
-  constructor(private readonly connection: Connection, private readonly ended: () => void) {}
+  /** `samples` tells how many the run has taken; `ended` is called when it comes back, and when it is stopped. */
+  constructor(private readonly connection: Connection, private readonly samples: () => number, private readonly ended: () => void) {}
 
   get isGoing(): boolean {
     return this.timer !== 0;
@@ -27,15 +31,20 @@ export class Sweep {
     const [parameter, from, to] = WAYS[tube.control];
     const range = tube.ranges[parameter];
     if (!range) return;
-    const begin = performance.now();
+    const [begin, first] = [performance.now(), this.samples()];
+    const most = Math.min(SHARE * tube.most_samples, REST * (tube.most_samples - first));
+    let last = -1;
     // As fast as the machine computes, so that the flow has the time that a minute gives.
     this.connection.send({ type: "speed", periods_per_second: null });
     this.connection.send({ type: "play", playing: true });
     const step = () => {
-      const part = (performance.now() - begin) / 1000 / MINUTE;
-      if (part >= 1) return this.end();
+      // A small tube is so quick that a minute has more samples than are kept.
+      const part = Math.min(1, Math.max((performance.now() - begin) / 1000 / MINUTE, (this.samples() - first) / most));
+      if (part < 1 && part < last + 1 / STEPS) return;
+      last = part;
       const place = from + (to - from) * (1 - Math.abs(1 - 2 * part));
       this.connection.send({ type: "steer", parameter, value: Math.min(range[1], Math.max(range[0], place)) });
+      if (part === 1) this.end();
     };
     step();
     this.timer = window.setInterval(step, EACH);

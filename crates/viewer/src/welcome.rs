@@ -2,6 +2,7 @@
 
 use peristalsis_configuration::{Control, Ends};
 use peristalsis_engine::Wall;
+use peristalsis_observe::MOST_ROWS;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 use peristalsis_run::{Configuration, VERSION};
 use serde::Serialize;
@@ -43,6 +44,8 @@ pub(crate) struct Welcome {
     pub(crate) rows: Vec<Row>,
     /// Duration of the run in periods.
     end: f64,
+    /// Samples after which a watched run stops.
+    most_samples: usize,
     /// The frames of a recording; null where the run is computed.
     pub(crate) recorded: Option<Recorded>,
     /// The study that it was opened from; null where it was opened by itself.
@@ -139,6 +142,7 @@ impl Welcome {
             record: Vec::new(),
             rows: Vec::new(),
             end: timeline.clock(end),
+            most_samples: MOST_ROWS,
             recorded: None,
             within: None,
         }
