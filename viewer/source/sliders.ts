@@ -1,4 +1,4 @@
-import { element } from "./page";
+import { element, say } from "./page";
 import type { Driven, Steered, Welcome } from "./protocol";
 
 const NAMES: Record<Steered, { name: string; digits: number }> = {
@@ -20,26 +20,35 @@ export class Sliders {
       const range = tube.ranges[key];
       if (!range) continue;
       const label = document.createElement("label");
-      label.innerHTML = `<span>${name}</span><input type="number" inputmode="decimal"><input type="range">`;
+      label.innerHTML = `<span>${name}</span><input type="text" inputmode="decimal" autocomplete="off"><input type="range">`;
       const [number, slider] = label.querySelectorAll("input");
-      for (const input of [number, slider]) {
-        input.min = String(range[0]);
-        input.max = String(range[1]);
-        input.step = key === "width" ? "0.005" : String(10 ** -digits);
-      }
+      slider.min = String(range[0]);
+      slider.max = String(range[1]);
       slider.step = key === "width" ? "0.005" : String((range[1] - range[0]) / 400);
       slider.setAttribute("aria-label", label.textContent ?? key);
       slider.id = `slider-${key}`;
       number.id = `number-${key}`;
+      let known = "";
       const steer = (value: number) => {
-        if (!Number.isFinite(value)) return;
         const within = Math.min(range[1], Math.max(range[0], value));
-        number.value = within.toFixed(digits);
+        known = number.value = within.toFixed(digits);
         slider.value = String(within);
         this.steered(key, within);
       };
       slider.oninput = () => steer(slider.valueAsNumber);
-      number.onchange = () => steer(number.valueAsNumber);
+      number.onfocus = () => (known = number.value);
+      number.onchange = () => {
+        // A comma is a point, as many write it.
+        const text = number.value.trim().replace(",", ".");
+        const value = text === "" ? NaN : Number(text);
+        if (Number.isFinite(value)) {
+          steer(value);
+          if (value < range[0] || value > range[1]) say(`${slider.ariaLabel}: ${text} is outside ${range[0]} to ${range[1]}, and ${number.value} is taken`, true);
+        } else {
+          say(`${slider.ariaLabel}: “${number.value}” is no number`, true);
+          number.value = known;
+        }
+      };
       box.append(label);
     }
     this.show(tube.driven, tube.driven);
