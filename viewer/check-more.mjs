@@ -159,8 +159,35 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     // A program that has ended is missed.
     end();
     await until(dark, () => document.body.dataset.lost === "true" && /has ended/.test(document.getElementById("status").textContent));
+    assert.equal(await dark.getAttribute("#play", "aria-pressed"), "false");
+    await shoot(dark, "lost");
     await dark.context().close();
     void closeDark;
+  }
+
+  /** A program that is started again at the same port has another address, which the page of the old one says. */
+  async function checkLost(browser) {
+    const { address, end } = await serve("frictionless", "--set", "tube.waves=2");
+    const { page, context } = await open(browser, address, desk);
+    await page.click("#play");
+    await until(page, () => window.viewer.measured.playing);
+    end();
+    await until(page, () => document.body.dataset.lost === "true");
+    const again = await serve("frictionless", "--set", "tube.waves=2", "--port", new URL(address).port);
+    await until(page, () => /no longer valid/.test(document.getElementById("status").textContent));
+    assert.equal(await page.getAttribute("#play", "aria-pressed"), "false");
+    // What is said of it is not grey as the rest is.
+    const greyed = await page.evaluate(() => {
+      for (let it = document.getElementById("status"); it; it = it.parentElement) {
+        const { filter, opacity } = getComputedStyle(it);
+        if (filter !== "none" || opacity !== "1") return it.outerHTML.slice(0, 60);
+      }
+      return null;
+    });
+    assert.equal(greyed, null);
+    await shoot(page, "lost-for-ever");
+    await context.close();
+    again.end();
   }
 
   /** Rows 11 to 13 of those who met the page first, files of the stage, and a start at another time. */
@@ -433,6 +460,6 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     end();
   }
 
-  return { more: checkMore, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
+  return { more: checkMore, lost: checkLost, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
     ...widgetChecks({ serve, until, shoot, desk }) };
 }

@@ -30,20 +30,23 @@ export class Server implements Connection {
     const socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => hear(this.listener, data);
-    socket.onclose = () => {
-      void this.ask().then((reason) => this.listener.lost(reason));
-      setTimeout(() => this.open(), 2000);
+    socket.onclose = async () => {
+      const { reason, isOver } = await this.ask();
+      this.listener.lost(reason);
+      if (!isOver) setTimeout(() => this.open(), 2000);
     };
     this.socket = socket;
   }
 
-  /** Why there is no connection: the program is gone, or it says why. */
-  private async ask(): Promise<string> {
+  /** Why there is no connection, and whether there never will be again: a program that is started anew has another address. */
+  private async ask(): Promise<{ reason: string; isOver: boolean }> {
     try {
       const answer = await fetch("live", { cache: "no-store" });
-      return answer.status === 503 ? await answer.text() : "The connection broke off; it is tried again every two seconds.";
+      if (answer.status === 404)
+        return { reason: "This address is no longer valid: the program has printed a new one. What is here can still be looked at.", isOver: true };
+      return { reason: answer.status === 503 ? await answer.text() : "The connection broke off; it is tried again every two seconds.", isOver: false };
     } catch {
-      return "The program has ended. What is here can still be looked at; start it again to go on.";
+      return { reason: "The program has ended, and this address with it: started again, it prints a new one. What is here can still be looked at.", isOver: false };
     }
   }
 }

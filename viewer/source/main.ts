@@ -116,6 +116,10 @@ class Page {
 
   private lost(reason: string): void {
     document.body.dataset.lost = "true";
+    this.sweep.end();
+    this.replaying &&= this.film instanceof History;
+    element("play").setAttribute("aria-pressed", String(this.playing()));
+    this.chartsStale = true;
     if (!this.tube) element("facts").textContent = "not connected";
     say(reason, true, true);
   }
@@ -216,7 +220,8 @@ class Page {
   }
 
   private playing(): boolean {
-    return this.cursor === null ? this.newest()?.playing === true : this.replaying;
+    if (this.cursor !== null) return this.replaying;
+    return !document.body.dataset.lost && this.newest()?.playing === true;
   }
 
   /** The last frame that was computed; none of a recording. */

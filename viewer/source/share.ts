@@ -161,6 +161,7 @@ export class Address {
     element<HTMLInputElement>("embed").value =
       `<iframe src="${small}" width="720" height="420" title="Grains in a peristaltic tube" loading="lazy"></iframe>`;
     element("embed-label").hidden = !this.own;
+    element("link-note").hidden = this.own;
     element<HTMLDialogElement>("share-dialog").showModal();
   }
 }
