@@ -81,6 +81,19 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     });
     assert(thinned.first === 0 && thinned.rows > 2000 && thinned.rows <= 8000 && thinned.means === 0, JSON.stringify(thinned));
     assert(thinned.widest <= thinned.each && thinned.each <= 128, JSON.stringify(thinned));
+    // Grains that have left the tube are no part of what flows in it.
+    const emptied = await page.evaluate(() => {
+      const { readout, tube, film } = window.viewer;
+      const spaceTime = new readout.spaceTime.constructor();
+      const see = (frame) => spaceTime.see(frame, { ...tube, waves: 6 });
+      see({ ...film.newest, velocity: film.newest.velocity.map(() => tube.heading * film.newest.wave_speed) });
+      const full = spaceTime.words();
+      see({ ...film.newest, clock: film.newest.clock + 1, position: film.newest.position.map((it, k) => (k % 3 === 0 ? 100 : it)) });
+      return [full, spaceTime.words(), [...spaceTime.looks[1].grains]];
+    });
+    assert.match(emptied[0], /^[1-6] of 6 waves jammed/);
+    assert.match(emptied[1], /^0 of 6 waves jammed/);
+    assert(emptied[2].every((grains) => grains === 0), `${emptied[2]}`);
     // Forces are drawn, and colours are made of them.
     const before = await pixels(page);
     await page.check("#contacts");

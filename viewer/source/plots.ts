@@ -1,6 +1,7 @@
 import { type Chart, type Entry, type Ink, written } from "./charts";
 import { colourAt, type Field, inWave, speedOf, stops } from "./fields";
 import type { Film } from "./film";
+import { insideOf } from "./inside";
 import { type Frame, unitOfTime, type Welcome } from "./protocol";
 
 /** Frames that a profile is averaged over, and looks at grains after which fewer frames do. */
@@ -84,7 +85,9 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   const volume = new Float64Array(BINS);
   const velocity = new Float64Array(BINS);
   for (const frame of frames) {
+    const isInside = insideOf(frame, tube);
     for (let i = 0; i < frame.grains; i++) {
+      if (!isInside(i)) continue;
       const bin = Math.min(BINS - 1, Math.floor(BINS * inWave(frame, tube, frame.position[3 * i + 2])));
       number[bin] += 1;
       volume[bin] += (Math.PI / 6) * frame.diameter[i] ** 3;

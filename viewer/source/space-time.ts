@@ -1,5 +1,6 @@
 import { type Chart, type Ink, written } from "./charts";
 import { type Colour, colourAt, css, FIELDS, stops } from "./fields";
+import { insideOf } from "./inside";
 import { type Frame, unitOfTime, type Welcome } from "./protocol";
 
 /** Waves from which on it is worth while to look at each by itself. */
@@ -7,7 +8,7 @@ export const FEWEST_WAVES = 6;
 /** Looks that are kept. */
 const MOST = 400;
 
-/** A look: a time in periods, and the mean velocity of the grains of each wave over its speed. */
+/** A look: a time in periods, and the velocities of the grains in each wave, over its speed, with their number. */
 interface Look {
   clock: number;
   flows: Float32Array;
@@ -39,7 +40,9 @@ export class SpaceTime {
         this.each *= 2;
       }
     }
+    const isInside = insideOf(frame, tube);
     for (let i = 0; i < frame.grains; i++) {
+      if (!isInside(i)) continue;
       const z = frame.position[3 * i + 2];
       const along = Math.floor((tube.heading * z) / tube.wavelength - frame.period);
       const wave = ((along % tube.waves) + tube.waves) % tube.waves;
