@@ -41,6 +41,18 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     assert.equal(await page.isChecked("#marks"), false);
     await page.keyboard.press("Escape");
     assert.equal(await page.evaluate(() => document.querySelector("dialog[open]")), null);
+    // The menu of looks closes by escape, and by a press elsewhere.
+    const isOpen = () => page.evaluate(() => document.querySelector("details.more").open);
+    await page.click("details.more summary");
+    assert(await isOpen());
+    await page.check("#lightness");
+    await page.uncheck("#lightness");
+    assert(await isOpen());
+    await page.keyboard.press("Escape");
+    assert(!(await isOpen()));
+    await page.click("details.more summary");
+    await page.mouse.click(200, 500);
+    assert(!(await isOpen()));
     // Marks are for colours with a sign.
     const look = () => page.evaluate(() => (document.querySelector("details.more").open = true));
     await look();
@@ -176,6 +188,34 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     await shoot(dark, "lost");
     await dark.context().close();
     void closeDark;
+  }
+
+  /** An open tube whose wave stands: no flow rate over the largest, no periods, no images. */
+  async function checkOpen(browser) {
+    const { address, end } = await serve("silo", "--set", "grains.number=700", "--set", "inlet.waiting=200");
+    const { page, close } = await open(browser, address, desk);
+    assert.match(await page.textContent("#facts"), /1 standing wave, open ends/);
+    assert.equal(await page.textContent("#direction"), "outlet ");
+    for (const id of ["ratio", "flow", "sweep"]) assert(!(await page.isVisible(`#${id}`)), `${id} of a standing wave`);
+    await fastest(page);
+    await until(page, () => window.viewer.measured.clock > 40 && /discharge rate[0-9.−·⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ m\/t/.test(document.getElementById("numbers").textContent));
+    await page.click("#play");
+    await until(page, () => !window.viewer.measured.playing && / t$/.test(document.getElementById("clock").textContent));
+    assert.match(await page.textContent("#bar-to"), /^[0-9.]+ d\/t$/);
+    // Each grain inside is drawn once, and those that wait are not.
+    const seen = await page.evaluate(() => {
+      const { scene, shownFrame } = window.viewer;
+      const inside = Array.from({ length: shownFrame.grains }, (_, i) => i).filter((i) => !Number.isNaN(shownFrame.position[3 * i]));
+      const sides = Array.from(scene.values.filter((it) => Math.abs(it - 0.5) > 0.05));
+      return { drawn: scene.grains.geometry.instanceCount, inside: inside.length, coloured: sides.length };
+    });
+    assert(seen.drawn > 0 && seen.drawn <= seen.inside && seen.coloured > 20, JSON.stringify(seen));
+    await page.focus("#stage");
+    await page.keyboard.press("g");
+    assert.match(await page.textContent("#grain-numbers"), /speed[0-9.−·⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ d\/t/);
+    await everyLook(page, "an open tube", pictures);
+    await close();
+    end();
   }
 
   /** A program that is started again at the same port has another address, which the page of the old one says. */
@@ -473,6 +513,6 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     end();
   }
 
-  return { more: checkMore, lost: checkLost, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
+  return { more: checkMore, open: checkOpen, lost: checkLost, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
     ...widgetChecks({ serve, until, shoot, desk }) };
 }

@@ -32,7 +32,7 @@ export function speedOf({ wave_speed, grains, position, velocity }: Frame): numb
 
 export const FIELDS: Record<string, Field> = {
   axial: {
-    name: "axial velocity v_z",
+    name: "axial velocity",
     ends: ["−c against", "c along"],
     diverging: true,
     values(frame, tube, into) {

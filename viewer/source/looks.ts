@@ -23,9 +23,24 @@ export function listenToLooks(field: string, looks: Looks): void {
     const box = element<HTMLInputElement>(id);
     box.onchange = () => change(box.checked);
   };
+  closeBeside(document.querySelector<HTMLDetailsElement>("details.more"));
   tick("contacts", (on) => looks.scene((scene) => (scene.contacts = on)));
   tick("marks", (on) => looks.scene((scene) => (scene.marks = on)));
   tick("lightness", (on) => looks.scene((scene) => (scene.lightness = on)));
   tick("ride", looks.ride);
   tick("follow", looks.follow);
+}
+
+/** Closes the menu by a press elsewhere, and by escape before that key does anything else. */
+function closeBeside(menu: HTMLDetailsElement | null): void {
+  if (!menu) return;
+  document.addEventListener("pointerdown", ({ target }) => {
+    if (!menu.contains(target as Node)) menu.open = false;
+  });
+  document.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !menu.open) return;
+    event.stopPropagation();
+    menu.open = false;
+    menu.querySelector("summary")?.focus();
+  }, true);
 }

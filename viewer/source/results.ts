@@ -70,7 +70,7 @@ const PARAMETERS = [
 
 /** Labels of keys that are no columns of their own. */
 const KEYS: Record<string, string> = {
-  wave_speed: "wave speed c", kinetic_friction: "friction μ", static_friction: "static friction μ_s",
+  wave_speed: "wave speed c", kinetic_friction: "friction μ", static_friction: "static friction μₛ",
   axial: "axial tether of the wall", end: "end of the schedule / T", from: "schedule from", to: "schedule to", form: "form of the schedule",
   periods: "periods of the run", late_fraction: "late part of the run", transition_threshold: "threshold of J/Jmax",
 };

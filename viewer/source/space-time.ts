@@ -56,7 +56,7 @@ export class SpaceTime {
     chart.begin([0, end], [0.5, tube.waves + 0.5], [unitOfTime(tube) === "T" ? "time / periods T" : "time / t", "wave"], colours, {
       legend: [
         { text: "against the wave", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.1)) },
-        { text: "jammed: ⟨v_z⟩ = c", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.97)) },
+        { text: "jammed: along it at c", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.97)) },
       ],
     });
     this.paint(tube.waves, stops(FIELDS.axial, lightness));
