@@ -52,8 +52,8 @@ export abstract class Film {
     const newest = this.rows.at(-1)?.number ?? -1;
     for (const row of rows) {
       if (row.number <= newest) continue;
-      this.rows.push({ ...row, friction, average: 0 });
-      this.average(this.rows.length - 1);
+      this.rows.push({ ...row, friction });
+      if (typeof row.average !== "number") this.average(this.rows.length - 1);
     }
     if (this.rows.length > ROWS) this.thinRows();
   }

@@ -14,7 +14,7 @@ export interface Row {
   /** Width or force amplitude. */
   amplitude: number;
   strain_rate: number;
-  /** J/Jmax averaged over the period that ends here; the page works it out. */
+  /** J/Jmax averaged over the period that ends here: the page works it out, but of rows that come thinned. */
   average: number;
   /** Friction at this time, as far as the page knows it. */
   friction: number | null;

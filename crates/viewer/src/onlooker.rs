@@ -3,7 +3,7 @@
 use peristalsis_run::{Run, Warning};
 
 use crate::frame::{Head, contacts_of, of_run};
-use crate::timeline::{Driven, rows, thin};
+use crate::timeline::{Driven, history, rows};
 use crate::welcome::Welcome;
 
 /// The side of a page that shows a run which somebody else advances and steers.
@@ -25,7 +25,7 @@ impl Onlooker {
         let mut welcome = Welcome::of(configuration, simulation.wall(), grains, title);
         welcome.driven = Driven::of(run);
         welcome.ranges.friction = None;
-        welcome.rows = thin(rows(run, 0));
+        welcome.rows = history(rows(run, 0));
         self.told = run.recorder().samples().len();
         welcome.to_json()
     }

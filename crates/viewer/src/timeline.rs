@@ -16,6 +16,8 @@ pub(crate) struct Row {
     pub(crate) number: usize,
     pub(crate) clock: f64,
     pub(crate) flow_rate_ratio: f64,
+    /// Its mean over the period that ends here, of rows that come thinned; of others the page works it out.
+    pub(crate) average: Option<f64>,
     pub(crate) bottleneck: f64,
     /// Width or force amplitude.
     pub(crate) amplitude: Option<f64>,
@@ -92,6 +94,7 @@ impl Timeline<'_> {
             number,
             clock,
             flow_rate_ratio,
+            average: None,
             bottleneck,
             amplitude: driven.width.or(driven.force_amplitude),
             strain_rate: driven.strain_rate,
@@ -121,9 +124,56 @@ pub(crate) fn rows(run: &Run, from: usize) -> impl Iterator<Item = Row> {
     samples.map(move |(number, sample)| timeline.row_of(number, sample))
 }
 
+/// A whole time series, thinned, with means of the rows as they were before; those of the last period stay, for the page's
+/// next means.
+pub(crate) fn history(rows: impl Iterator<Item = Row>) -> Vec<Row> {
+    let mut rows: Vec<Row> = rows.collect();
+    let mut first = 0;
+    for last in 0..rows.len() {
+        let begin = rows[last].clock - 0.999;
+        while rows[first].clock <= begin {
+            first += 1;
+        }
+        let ratios = rows[first..=last].iter().map(|row| row.flow_rate_ratio);
+        let known: Vec<f64> = ratios.filter(|ratio| !ratio.is_nan()).collect();
+        rows[last].average = Some(known.iter().sum::<f64>() / known.len() as f64);
+    }
+    let last = rows.split_off(first);
+    thin(rows.into_iter()).into_iter().chain(last).collect()
+}
+
 /// Every n-th row, n a power of 2, as the page thins them further, so that at most [`FIRST_ROWS`] are left.
 pub(crate) fn thin<T>(rows: impl Iterator<Item = T>) -> Vec<T> {
     let rows: Vec<T> = rows.collect();
     let each = rows.len().div_ceil(FIRST_ROWS).next_power_of_two();
     rows.into_iter().step_by(each).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_history_is_thinned_evenly_with_the_means_of_all_its_rows() {
+        let row = |number: usize| Row {
+            number,
+            clock: number as f64 / 20.0,
+            flow_rate_ratio: (number % 20) as f64,
+            average: None,
+            bottleneck: 0.0,
+            amplitude: None,
+            strain_rate: None,
+        };
+        let rows = history((0..50_000).map(row));
+        assert!(rows.len() > 2000 && rows.len() < 4100, "{}", rows.len());
+        let thinned = &rows[..rows.len() - 20];
+        assert!(
+            thinned
+                .windows(2)
+                .all(|two| two[1].number - two[0].number == 16)
+        );
+        assert_eq!(rows[rows.len() - 20].number, 49_980);
+        let means = rows.iter().skip(2).map(|row| row.average.unwrap());
+        assert!(means.into_iter().all(|mean| (mean - 9.5).abs() < 1e-9));
+    }
 }

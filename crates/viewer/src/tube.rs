@@ -13,7 +13,7 @@ use crate::course::{Course, Turn};
 use crate::frame::{Head, contacts_of, of_run};
 use crate::message::{self, Command, Notice, Steered};
 use crate::steering::Steering;
-use crate::timeline::{Driven, Timeline, rows, thin};
+use crate::timeline::{Driven, Timeline, history, rows, thin};
 use crate::welcome::Welcome;
 use crate::within::Within;
 
@@ -130,7 +130,7 @@ impl Tube {
         welcome.driven = Driven::of(&self.run);
         welcome.record = thin(record.map(|&(time, ratio)| (timeline.clock(time), ratio)));
         welcome.within = self.labels.within.clone();
-        welcome.rows = thin(rows(&self.run, 0));
+        welcome.rows = history(rows(&self.run, 0));
         welcome.to_json()
     }
 
