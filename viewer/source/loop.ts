@@ -40,18 +40,19 @@ export function acrossOf(tube: Welcome, frame: Frame): Across {
 /** Where the flow crossed half of the largest while the parameter was driven. */
 export function thresholds(rows: Row[], { of }: Across): Thresholds {
   const found: Thresholds = { jams: null, letsGo: null };
-  let [side, crossed, from] = [0, NaN, NaN];
+  let [side, crossed, low, high] = [0, NaN, Infinity, -Infinity];
   for (const row of rows) {
     const value = of(row);
-    if (Number.isNaN(from)) from = value;
+    if (value < low) low = value;
+    if (value > high) high = value;
     const now = row.average > HALF + ROOM ? 1 : row.average < HALF - ROOM ? -1 : 0;
     if (now === side) crossed = NaN;
     else if (Number.isNaN(crossed) && (row.average - HALF) * side < 0) crossed = value;
     if (now === 0 || now === side) continue;
     // What a tube does by itself says nothing of its width.
-    const isDriven = Math.abs(value - from) > 0.004 * Math.abs(value);
+    const isDriven = Math.max(value - low, high - value) > 0.004 * Math.abs(value);
     if (side !== 0 && isDriven) found[now > 0 ? "jams" : "letsGo"] = Number.isNaN(crossed) ? value : crossed;
-    [side, from, crossed] = [now, value, NaN];
+    [side, crossed, low, high] = [now, NaN, Infinity, -Infinity];
   }
   return found;
 }
