@@ -24,7 +24,7 @@ pub(crate) fn text(report: &Report, figures: &str) -> String {
     let count = |verdict: Verdict| {
         let examinations = report.examinations.iter();
         let found = examinations.filter(|one| one.finding.verdict == verdict);
-        format!("{} {}", found.count(), verdict.name())
+        format!("{}: {}", verdict.name(), found.count())
     };
     let verdicts = [
         Verdict::Reproduced,
