@@ -430,7 +430,7 @@ async function checkStudy(browser) {
   const { page: growing, close: closeGrowing } = await open(browser, address, desk, hasPoints);
   assert(!(await growing.isVisible("#refresh")));
   writeFileSync(file, STUDY.replace("replicates = 2", "replicates = 9"));
-  compute("--for", "1s");
+  compute("--for", "0.1s");
   await growing.reload();
   await until(growing, hasPoints);
   await until(growing, () => document.getElementById("facts").textContent.includes("waiting"));
