@@ -49,7 +49,7 @@ pub(crate) enum Failure {
     Trajectory {
         folder: PathBuf,
         source: RunError,
-        /// Whether the state could be saved all the same.
+        /// Whether all else could be written.
         is_saved: bool,
     },
     /// What a run has found cannot be written.
@@ -131,7 +131,7 @@ impl Failure {
                 "{}: make room, then go on with: peristalsis run --resume {}",
                 match is_saved {
                     true => "nothing that was measured is lost",
-                    false => "the state could not be saved either, so that what came after the last one is computed again",
+                    false => "what could not be saved either is computed again",
                 },
                 folder.display()
             )),

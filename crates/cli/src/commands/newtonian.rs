@@ -10,8 +10,7 @@ use crate::failure::Failure;
 
 pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Failure> {
     let (width, radius, pressure) = (arguments.width, arguments.radius, arguments.pressure);
-    let fluid = NewtonianPeristalsis::from_width(width, radius, pressure);
-    let fluid = fluid.filter(|_| radius.is_finite()).ok_or_else(|| {
+    let fluid = NewtonianPeristalsis::from_width(width, radius, pressure).ok_or_else(|| {
         Failure::usage(
             format!("there is no such tube: width {width}, radius {radius}, pressure {pressure}"),
             "0 <= width <= 2 radius; a finite radius and pressure",

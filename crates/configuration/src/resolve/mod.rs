@@ -285,11 +285,6 @@ struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Where the value of a key was written.
-    fn origin(&self, key: &str) -> Option<Origin> {
-        document::entry(self.table, key).map(|entry| entry.item.origin.clone())
-    }
-
     /// Whether a key was written.
     fn given(&self, key: &str) -> bool {
         document::entry(self.table, key).is_some()
@@ -309,12 +304,12 @@ impl Context<'_> {
         message: String,
         help: String,
     ) -> Option<T> {
-        let mut places: Vec<(String, Origin)> = Vec::new();
+        let mut places: Vec<(&str, Origin)> = Vec::new();
         for (place, key) in keys.iter().enumerate() {
             if !keys[..place].contains(key)
-                && let Some(origin) = self.origin(key)
+                && let Some(entry) = document::entry(self.table, key)
             {
-                places.push((written_as(key, &origin), origin));
+                places.push((written_as(key, entry), entry.item.origin.clone()));
             }
         }
         // What a higher layer changed is nearer to the cause than what a preset states.
@@ -328,16 +323,13 @@ impl Context<'_> {
     }
 }
 
-/// The key as it stands before its value: another one where the value follows from that, such as a material.
-fn written_as(key: &str, origin: &Origin) -> String {
-    let before = &origin.source.text[..origin.span.start];
-    let before = before.trim_end().strip_suffix('=').unwrap_or_default();
-    let is_of_key = |letter: char| letter.is_alphanumeric() || "._-".contains(letter);
-    let written = before.trim_end().rsplit(|letter| !is_of_key(letter)).next();
-    let last = |key: &str| key.rsplit('.').next().map(str::to_owned);
-    match written {
-        Some(written) if !written.is_empty() && last(written) != last(key) => written.to_owned(),
-        _ => key.to_owned(),
+/// The name under which the value of a key was written: another key's where it follows from that, such as a material.
+fn written_as<'k>(key: &'k str, entry: &'k document::Entry) -> &'k str {
+    let [last, written] = [key, entry.key.text()].map(|name| name.rsplit('.').next());
+    if last == written {
+        key
+    } else {
+        entry.key.text()
     }
 }
 

@@ -64,8 +64,11 @@ impl NewtonianPeristalsis {
     /// Flow in a tube of mean radius a whose bottleneck has width w: phi = b/a = 1 - w/(2a).
     ///
     /// `width` and `radius` in one unit of length. The same formula gives the clear bore between spheres of diameter d
-    /// with width w - d and radius a - d/2. `None` unless 0 <= w <= 2a and P is finite.
+    /// with width w - d and radius a - d/2. `None` unless 0 <= w <= 2a, and a and P are finite.
     pub fn from_width(width: f64, radius: f64, pressure: f64) -> Option<Self> {
+        if !radius.is_finite() {
+            return None;
+        }
         Self::new(1.0 - width / (2.0 * radius), pressure)
     }
 

@@ -105,6 +105,11 @@ impl Trajectory {
         RunError::if_one_is_in(folder, &Self::names().collect::<Vec<_>>())
     }
 
+    /// Whether a run in this folder has a trajectory.
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(PLAN).exists()
+    }
+
     /// The files of a trajectory in the folder of its run.
     pub(crate) fn names() -> impl Iterator<Item = &'static str> {
         let formats = TrajectoryFormat::ALL.into_iter();

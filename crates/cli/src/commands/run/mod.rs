@@ -11,7 +11,8 @@ use std::sync::Once;
 use peristalsis_configuration::{Configuration, InitialState, SourceFile, Sources};
 use peristalsis_engine::{Instructions, processors};
 use peristalsis_run::{
-    Run, RunError, RunFolder, TrajectoryPlan, read_state, scheduled_wavelengths, warnings,
+    Run, RunError, RunFolder, Trajectory, TrajectoryPlan, read_state, scheduled_wavelengths,
+    warnings,
 };
 
 use crate::arguments::{RunArguments, Threads};
@@ -59,6 +60,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if let Some(report) = &summary.trajectory {
         tell(format!("trajectory: {}", in_one_line(report)));
     }
+    let is_saved = outcome.finished.is_ok();
     // Where the disk is full, what could not be written first is what to speak of.
     if !matches!(outcome.ending, Ending::Unwritten(_)) {
         let figures = outcome.finished.map_err(|source| Failure::Results {
@@ -74,7 +76,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Ending::Unwritten(source) => Err(Failure::Trajectory {
             folder: work.folder.path().to_owned(),
             source,
-            is_saved: outcome.is_saved,
+            is_saved,
         }),
         Ending::Complete => {
             tell(format!("written to {place}"));
@@ -218,7 +220,7 @@ fn go_on(
         true => read_state(source)?,
         false => not_diverged(&RunFolder::named(source))?,
     };
-    if source.join("trajectory.toml").exists() && arguments.frames.trajectory.is_empty() {
+    if Trajectory::is_in(source) && arguments.frames.trajectory.is_empty() {
         tell(
             arguments.quiet,
             "the trajectory ends here: in the new folder --trajectory begins another",
@@ -288,7 +290,7 @@ fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Re
         let unit = "t";
         return Err(RunError::TooShort { done, asked, unit }.into());
     }
-    if source.join("trajectory.toml").exists() {
+    if Trajectory::is_in(source) {
         return Err(Failure::usage(
             "a run of a wave that stands still is sampled at other times when it is longer, and its trajectory would not fit",
             format!(

@@ -193,7 +193,6 @@ fn replica(
         return Ok(Outcome {
             ending: Ending::Complete,
             summary,
-            is_saved: false,
             finished: Ok(Vec::new()),
         });
     }

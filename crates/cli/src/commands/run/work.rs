@@ -27,8 +27,6 @@ pub(super) enum Ending {
 pub(super) struct Outcome {
     pub(super) ending: Ending,
     pub(super) summary: Summary,
-    /// Whether the state was saved where the trajectory could not be written.
-    pub(super) is_saved: bool,
     /// The figures, if its results could be written.
     pub(super) finished: Result<Vec<PathBuf>, RunError>,
 }
@@ -89,12 +87,9 @@ impl Work {
         let mut summary = Summary::of(&self.run, status, message);
         summary.trajectory = report;
         let finished = self.folder.finish(&self.run, &summary);
-        let is_unwritten = matches!(ending, Ending::Unwritten(_));
-        let is_saved = is_unwritten && self.folder.save_state(&self.run).is_ok();
         let outcome = Outcome {
             ending,
             summary,
-            is_saved,
             finished,
         };
         (self, outcome)
