@@ -13,8 +13,8 @@ fn words(overrides: &[&str]) -> Vec<String> {
 fn overrides() -> impl Strategy<Value = Vec<String>> {
     let grains = prop_oneof![
         (0_u64..5000).prop_map(|number| format!("grains.number={number}")),
-        (0.0..0.6).prop_map(|fraction: f64| format!("grains.volume_fraction={fraction:?}")),
-        (0.0..1.0).prop_map(|density: f64| format!("grains.number_density={density:?}")),
+        (0.01..0.6).prop_map(|fraction: f64| format!("grains.volume_fraction={fraction:?}")),
+        (0.01..1.0).prop_map(|density: f64| format!("grains.number_density={density:?}")),
     ];
     let rate = prop_oneof![
         (1e-3..0.5).prop_map(|rate: f64| format!("drive.strain_rate={rate:?}")),
