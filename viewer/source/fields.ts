@@ -65,7 +65,7 @@ export const FIELDS: Record<string, Field> = {
     },
   },
   wave: {
-    name: "place in the wave",
+    name: "position in the wave",
     ends: ["0", "λ"],
     diverging: false,
     cyclic: true,

@@ -13,6 +13,7 @@ import { listenToPointers } from "./pointers";
 import { type Driven, type Frame, type Told, unitOfTime, type Welcome } from "./protocol";
 import { extent, measuredOf } from "./readings";
 import { isSteady, Readout, showGrain } from "./readout";
+import { insteadOfLoop } from "./plots";
 import { Recording } from "./recording";
 import { showSaved } from "./saved";
 import { Scene, WALLS } from "./scene";
@@ -186,7 +187,7 @@ class Page {
     this.shownFrame = null;
     this.chartsStale = true;
     document.body.dataset.recorded = String(recorded !== null);
-    element("loop-name").textContent = isSteady(this.film, tube) ? "The bottleneck" : recorded ? "The loop, as it was driven" : "The loop";
+    element("loop-name").textContent = isSteady(this.film, tube) ? insteadOfLoop(tube).name : recorded ? "The loop, as it was driven" : "The loop";
   }
 
   private missing(number: number, message: string): void {

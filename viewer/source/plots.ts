@@ -2,7 +2,7 @@ import { type Chart, type Entry, type Ink, written } from "./charts";
 import { colourAt, type Field, inWave, speedOf, stops } from "./fields";
 import type { Film } from "./film";
 import { insideOf } from "./inside";
-import { type Frame, unitOfTime, type Welcome } from "./protocol";
+import { type Frame, type Row, timeAxis, type Welcome } from "./protocol";
 
 /** Frames that a profile is averaged over, and looks at grains after which fewer frames do. */
 const AVERAGED = 16;
@@ -28,7 +28,7 @@ export function drawFlow(chart: Chart, film: Film, tube: Welcome, clock: number,
   ];
   if (newtonian.length > 0) legend.push({ text: "Newtonian fluid", colour: colours.faint, dash: [1, 3] });
   if (record.length > 0) legend.push({ text: "computed before", colour: colours.wall, dash: [4, 3] });
-  chart.begin([0, last], [least, most], ["time / periods T", "J / Jmax"], colours, { legend });
+  chart.begin([0, last], [least, most], [timeAxis(tube), "J / Jmax"], colours, { legend });
   chart.curve([[0, 0], [last, 0]], colours.faint, 1);
   // Where there are frames, unless everywhere.
   if (recorded && recorded[recorded.length - 1] - recorded[0] < 0.98 * last) chart.curve([[recorded[0], least], [recorded[recorded.length - 1], least]], colours.accent, 5);
@@ -58,18 +58,25 @@ function sparse(points: [number, number][]): [number, number][] {
   return points.flatMap((point, k): [number, number][] => (k > 0 && point[0] - points[k - 1][0] > far ? [[point[0], NaN], point] : [point]));
 }
 
-/** The bottleneck against time, with the time that is shown; false where it is not known. */
-export function drawBottleneck(chart: Chart, film: Film, tube: Welcome, clock: number, colours: Ink): boolean {
-  const points = film.rows.map((row): [number, number] => [row.clock, row.bottleneck ?? NaN]);
-  const known = points.map(([, bottleneck]) => bottleneck).filter(Number.isFinite);
+/** What is drawn where there is no loop: its name, the label of its axis, and where a row has it. */
+export const insteadOfLoop = ({ open }: Welcome): { name: string; label: string; key: keyof Row } =>
+  open
+    ? { name: "The discharge", label: "discharge rate / (m/t)", key: "discharge_rate" }
+    : { name: "The bottleneck", label: "narrowest place w / d", key: "bottleneck" };
+
+/** This against time, with the time that is shown; false where it is not known. */
+export function drawInsteadOfLoop(chart: Chart, film: Film, tube: Welcome, clock: number, colours: Ink): boolean {
+  const { label, key } = insteadOfLoop(tube);
+  const points = film.rows.map((row): [number, number] => [row.clock, row[key] ?? NaN]);
+  const known = points.map(([, value]) => value).filter(Number.isFinite);
   if (known.length === 0) return false;
   const [least, most] = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
-  const room = Math.max(0.15 * (most - least), 0.05);
-  const last = points[points.length - 1][0];
-  chart.begin([0, last], [least - room, most + room], [unitOfTime(tube) === "T" ? "time / periods T" : "time / t", "narrowest place w / d"], colours);
+  const room = Math.max(0.15 * (most - least), 0.02 * Math.abs(most)) || 1;
+  const last = Math.max(points[points.length - 1][0], clock) || 1;
+  chart.begin([0, last], [least - room, most + room], [timeAxis(tube), label], colours);
   // The rows of a standing wave are as far apart in t as one likes.
   chart.curve(tube.unit_period === null ? points : sparse(points), colours.accent, 2);
-  chart.upright(Math.min(clock, last), colours.text);
+  chart.upright(clock, colours.text);
   const at = points.findLastIndex(([time]) => time <= clock + 1e-9);
   if (at >= 0) chart.dot(...points[at], 4, colours.accent, colours.back);
   return true;
@@ -102,7 +109,7 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
     { text: "volume fraction φ", colour: colours.text, dash: [2, 3] },
     { text: "tube", colour: colours.wall },
   ];
-  chart.begin([0, 1], [least, 1.3], ["place in the wave (z − ct)/λ", ""], colours, { legend });
+  chart.begin([0, 1], [least, 1.3], ["position (z − ct)/λ", ""], colours, { legend });
   const middle = (bin: number) => (bin + 0.5) / BINS;
   // The tube's outline above and below the middle of the chart.
   const radius = outline(film.frame(shown) ?? frames.at(-1), tube);

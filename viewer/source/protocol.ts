@@ -11,6 +11,8 @@ export interface Row {
   clock: number;
   flow_rate_ratio: number | null;
   bottleneck: number | null;
+  /** Of an open tube. */
+  discharge_rate: number | null;
   /** Width or force amplitude. */
   amplitude: number;
   strain_rate: number;
@@ -56,6 +58,9 @@ export interface Welcome {
 
 /** The unit of clocks. */
 export const unitOfTime = ({ unit_period }: Welcome): "T" | "t" => (unit_period === null ? "t" : "T");
+
+/** The label of an axis of time. */
+export const timeAxis = (tube: Welcome): string => (unitOfTime(tube) === "T" ? "time / periods T" : "time / t");
 
 export interface Saved {
   type: "saved";

@@ -43,7 +43,7 @@ export function factsOfGrain(frame: Frame, tube: Welcome, grain: number): Facts 
     ...itself,
     ["from the axis", `${written(Math.hypot(x, y))} d`],
     ["along the tube", `${written(z, 4)} d`],
-    ["place in the wave", `${written(inWave(frame, tube, z))} λ`],
+    ["position in the wave", `${written(inWave(frame, tube, z))} λ`],
     ["along the wave", `${written((tube.heading * vz) / c)} ${unit}`],
     ["speed", `${written(Math.hypot(vx, vy, vz) / c)} ${unit}`],
   ];

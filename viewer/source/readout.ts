@@ -4,7 +4,7 @@ import type { Film } from "./film";
 import { drawFlat } from "./flat";
 import { acrossOf, drawLoop, thresholds, wordsOf } from "./loop";
 import { element, fill } from "./page";
-import { drawBottleneck, drawFlow, drawMap, drawProfile } from "./plots";
+import { drawFlow, drawInsteadOfLoop, drawMap, drawProfile } from "./plots";
 import { type Frame, unitOfTime, type Welcome } from "./protocol";
 import { factsOfDrive, factsOfGrain, factsOfSample, inWords, summaryOf } from "./readings";
 import type { Scene } from "./scene";
@@ -55,7 +55,7 @@ export class Readout {
     const { charts } = this;
     drawFlow(charts.flow, film, tube, frame.clock, colours);
     if (!isSteady(film, tube)) this.showLoop(shown);
-    else element("loop-figure").hidden = !drawBottleneck(charts.loop, film, tube, frame.clock, colours);
+    else element("loop-figure").hidden = !drawInsteadOfLoop(charts.loop, film, tube, frame.clock, colours);
     drawProfile(charts.profile, film, index, tube, colours);
     const isLong = tube.waves >= FEWEST_WAVES && !tube.recorded;
     element("space-time-figure").hidden = !isLong;

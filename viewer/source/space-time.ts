@@ -1,7 +1,7 @@
 import { type Chart, type Ink, written } from "./charts";
 import { type Colour, colourAt, css, FIELDS, stops } from "./fields";
 import { insideOf } from "./inside";
-import { type Frame, unitOfTime, type Welcome } from "./protocol";
+import { type Frame, timeAxis, type Welcome } from "./protocol";
 
 /** Waves from which on it is worth while to look at each by itself. */
 export const FEWEST_WAVES = 6;
@@ -53,7 +53,7 @@ export class SpaceTime {
 
   draw(chart: Chart, tube: Welcome, lightness: boolean, colours: Ink): void {
     const end = Math.max(this.looks.at(-1)?.clock ?? 0, 2);
-    chart.begin([0, end], [0.5, tube.waves + 0.5], [unitOfTime(tube) === "T" ? "time / periods T" : "time / t", "wave"], colours, {
+    chart.begin([0, end], [0.5, tube.waves + 0.5], [timeAxis(tube), "wave"], colours, {
       legend: [
         { text: "against the wave", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.1)) },
         { text: "jammed: along it at c", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.97)) },

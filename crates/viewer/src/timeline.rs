@@ -19,6 +19,8 @@ pub(crate) struct Row {
     /// Its mean over the period that ends here, of rows that come thinned; of others the page works it out.
     pub(crate) average: Option<f64>,
     pub(crate) bottleneck: f64,
+    /// Of an open tube.
+    pub(crate) discharge_rate: f64,
     /// Width or force amplitude.
     pub(crate) amplitude: Option<f64>,
     pub(crate) strain_rate: Option<f64>,
@@ -80,22 +82,17 @@ impl Timeline<'_> {
         time / self.unit_period()
     }
 
-    /// A row of the time series.
-    pub(crate) fn row(
-        self,
-        number: usize,
-        time: f64,
-        flow_rate_ratio: f64,
-        bottleneck: f64,
-    ) -> Row {
+    /// A row of the time series, of which only the drive is known.
+    pub(crate) fn row(self, number: usize, time: f64) -> Row {
         let clock = self.clock(time);
         let driven = self.driven(clock);
         Row {
             number,
             clock,
-            flow_rate_ratio,
+            flow_rate_ratio: f64::NAN,
             average: None,
-            bottleneck,
+            bottleneck: f64::NAN,
+            discharge_rate: f64::NAN,
             amplitude: driven.width.or(driven.force_amplitude),
             strain_rate: driven.strain_rate,
         }
@@ -103,8 +100,12 @@ impl Timeline<'_> {
 
     /// The row of a sample.
     pub(crate) fn row_of(self, number: usize, sample: &Sample) -> Row {
-        let (ratio, bottleneck) = (sample.flow_rate_ratio, sample.bottleneck);
-        self.row(number, sample.time, ratio, bottleneck)
+        Row {
+            flow_rate_ratio: sample.flow_rate_ratio,
+            bottleneck: sample.bottleneck,
+            discharge_rate: sample.discharge_rate,
+            ..self.row(number, sample.time)
+        }
     }
 
     /// The driven parameters at a time in periods.
@@ -161,6 +162,7 @@ mod tests {
             flow_rate_ratio: (number % 20) as f64,
             average: None,
             bottleneck: 0.0,
+            discharge_rate: f64::NAN,
             amplitude: None,
             strain_rate: None,
         };

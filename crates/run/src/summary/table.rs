@@ -163,7 +163,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("radial_mixing_time", "t", "the same of radial mixing", Optional(|s| s.mixed?.radial_time)).labelled("radial mixing time"),
     result("radial_segregation", "1", "late mean correlation of diameter and radial place: positive where large grains are outside; missing for one size", OptionalMeasured(|s| s.segregated.radial)).labelled("radial segregation"),
     result("height_segregation", "1", "late mean correlation of diameter and height: positive where large grains are on top; missing without gravity across", OptionalMeasured(|s| s.segregated.height)).labelled("segregation by height"),
-    result("belly_segregation", "1", "late mean correlation of diameter and the tube's radius: positive where large grains are in the bellies", OptionalMeasured(|s| s.segregated.belly)).labelled("segregation by place in the wave"),
+    result("belly_segregation", "1", "late mean correlation of diameter and the tube's radius: positive where large grains are in the bellies", OptionalMeasured(|s| s.segregated.belly)).labelled("segregation by position in the wave"),
     result("residence_time", "t", "late mean time of a grain through the tube, N/J; missing where the flow is not along the wave", OptionalMeasured(|s| s.residence_time)).labelled("residence time"),
     result("axial_dispersion", "d^2/t", "half the late rate at which the variance of axial displacements grows from period to period", Measured(|s| s.axial_dispersion)).labelled("axial dispersion"),
     result("late_periods", "1", "periods that late means are over", Real(Summary::late_periods)),

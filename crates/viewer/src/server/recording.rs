@@ -181,8 +181,10 @@ impl Recording {
         for (frame, &time) in self.times.iter().enumerate() {
             if time > sampled + SLACK * timeline.unit_period() {
                 let ratio = self.reader.value(frame, "flow_rate_ratio")?;
-                let ratio = ratio.unwrap_or(f64::NAN);
-                rows.push(timeline.row(rows.len(), time, ratio, f64::NAN));
+                rows.push(Row {
+                    flow_rate_ratio: ratio.unwrap_or(f64::NAN),
+                    ..timeline.row(rows.len(), time)
+                });
             }
         }
         Ok(rows)
