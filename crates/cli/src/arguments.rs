@@ -105,7 +105,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Number of threads, or auto: as many as pay for the number of moving spheres. Results do not depend on it.
-    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads, allow_negative_numbers = true)]
     pub(crate) threads: Threads,
     /// Instruction set; the default is the widest of this machine. Results do not depend on it.
     #[arg(long, value_name = "SET", value_parser = one_of(Instructions::ALL))]
@@ -208,7 +208,7 @@ pub(crate) struct ViewArguments {
     #[arg(long, value_name = "DIR", default_value = "saved-states")]
     pub(crate) saves: PathBuf,
     /// Number of threads, or auto: as many as pay for the number of moving spheres. Results do not depend on it.
-    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads, allow_negative_numbers = true)]
     pub(crate) threads: Threads,
 }
 

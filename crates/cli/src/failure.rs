@@ -209,7 +209,8 @@ const MEND: &str = "nothing that was finished is lost: mend the disk and call ag
 /// What to do about results that could not all be written.
 fn unwritten(folder: &RunFolder) -> String {
     let path = folder.path().display();
-    match folder.has_summary() {
+    let state = folder.state();
+    match state.is_ok_and(|run| folder.has_results_of(&run)) {
         true => format!(
             "the tables are there: make room, then draw the figures with: peristalsis figures {path}"
         ),
@@ -243,7 +244,8 @@ fn of_run(error: &RunError) -> Advice {
         ),
         RunError::NothingToResume { folder, reason } if reason.contains("complete") => {
             wrong(format!(
-                "let it go on: peristalsis run --resume {} --periods N (or --duration T), N beyond its end",
+                "let it go on: peristalsis run --resume {0} --periods N (or --duration T), N beyond its end; draw its figures \
+                 again: peristalsis figures {0}",
                 folder.display()
             ))
         }

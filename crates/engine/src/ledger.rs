@@ -34,7 +34,7 @@ pub struct Tally {
     pub rolling_lost: f64,
     /// Energy of cohesion lost in this step because contacts broke.
     pub cohesion_lost: f64,
-    /// Energy of tangential and rolling springs forgotten in this step because their contacts ended.
+    /// Energy of tangential and rolling springs forgotten in this step because their spheres parted.
     pub history_reset: f64,
     /// Axial force of the wall on the grains, along +z \[m d/t^2\].
     pub wall_axial_force: f64,
@@ -132,7 +132,8 @@ pub struct Ledger {
     pub drag_dissipated: f64,
     /// Lost in the dashpots of the wall's network.
     pub network_dissipated: f64,
-    /// Energy of tangential and rolling springs forgotten at the end of contacts.
+    /// Energy of tangential and rolling springs forgotten because their spheres parted. Where damping brings the normal force
+    /// to 0 before, as in Hertz contacts, the spring slides to nothing, and that counts as sliding.
     pub history_reset: f64,
     /// Largest overlap of a contact of a grain at any step \[d\].
     pub largest_overlap: f64,
@@ -189,8 +190,8 @@ impl Ledger {
             + self.dissipated()
     }
 
-    /// |residual| over the integral of |power of wall and drive| and the |work of the body force|; over the initial energy
-    /// where next to nothing entered; 0 where nothing is missing.
+    /// |residual| over the sum of the integral of |power of wall and drive| and of the size of the body force's work, of which
+    /// what it gave and took cancels; over the initial energy where next to nothing entered; 0 where nothing is missing.
     pub fn relative_residual(&self, energy: f64) -> f64 {
         let residual = self.residual(energy).abs();
         let entered = self.gross_work + self.body_work.abs();

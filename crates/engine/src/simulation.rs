@@ -354,14 +354,16 @@ impl Simulation {
         self.course.time()
     }
 
-    /// Kinetic plus potential energy of grains and elastic wall \[m d^2/t^2\].
+    /// Kinetic plus potential energy of elastic wall and grains, without those that wait outside \[m d^2/t^2\].
     pub fn energy(&self) -> f64 {
-        self.bodies.kinetic_energy(0..self.bodies.number())
+        let present = (0..self.bodies.number()).filter(|&sphere| self.is_present(sphere));
+        let kinetic_energy = present.map(|sphere| self.bodies.kinetic_energy(sphere..sphere + 1));
+        kinetic_energy.sum::<f64>()
             + self.bodies.rotational_energy()
             + self.tally().potential_energy()
     }
 
-    /// Energy that the ledger cannot account for over the integral of |power that enters|.
+    /// Energy that the ledger cannot account for over what entered: [`Ledger::relative_residual`].
     pub fn energy_residual(&self) -> f64 {
         self.ledger().relative_residual(self.energy())
     }
@@ -479,10 +481,11 @@ impl Simulation {
             && from_axis > wall.usual_radius() + reach
     }
 
-    /// First moment of the grains' mass, sum m r with turns round the tube counted \[m d\].
+    /// First moment of the mass of the grains that are there, sum m r with turns round the tube counted \[m d\].
     fn moment(&self) -> DVec3 {
         let (bodies, length) = (&self.bodies, self.wall().length());
         let place = |i: usize| bodies.position[i].with_z(bodies.unfolded(i, length));
-        (0..bodies.grains).map(|i| bodies.mass[i] * place(i)).sum()
+        let present = (0..bodies.grains).filter(|&grain| self.is_present(grain));
+        present.map(|i| bodies.mass[i] * place(i)).sum()
     }
 }

@@ -175,6 +175,47 @@ fn a_feed_rate_is_kept_and_who_runs_dry_is_told() {
     assert!(ends.waiting() == 0 && ends.passages().starved > 0);
 }
 
+#[test]
+fn grains_that_wait_do_no_work_and_go_nowhere() {
+    let shut = Inlet {
+        feed_rate: Some(0.0),
+        ..inlet()
+    };
+    let opened = |more: &[f64]| {
+        let wall = tube(1.0, 0.0);
+        let bodies = packed(GRAINS, 0.8, &wall, LINEAR, 3);
+        let parameters = Parameters {
+            body_force: DVec3::new(0.0, -2e-3, 1e-2),
+            ..parameters(LINEAR, Some(FRICTION), Integrator::Verlet, 0.1)
+        };
+        let ends = OpenEnds {
+            heading: 1.0,
+            inlet: shut,
+            seed: 5,
+        };
+        let closed = Simulation::new(bodies, wall, parameters);
+        closed.open(ends, more).unwrap()
+    };
+    let (mut few, mut many) = (opened(&[]), opened(&[0.9; WAITING]));
+    // The last of these lies between two looks.
+    for steps in [20, 200, 33] {
+        few.advance(steps).unwrap();
+        many.advance(steps).unwrap();
+        let waits = |grain: &usize| !many.is_present(*grain);
+        assert!((GRAINS..GRAINS + WAITING).all(|grain| waits(&grain)));
+        assert_eq!(many.ledger(), few.ledger());
+        assert_eq!(many.energy(), few.energy());
+        for grain in (0..GRAINS).filter(waits) {
+            assert_eq!(many.travelled(grain), few.travelled(grain));
+        }
+        for grain in GRAINS..GRAINS + WAITING {
+            // Where it was put at the start.
+            assert!(many.travelled(grain).abs() < 1e-9, "{grain}");
+        }
+    }
+    assert!(few.ledger().body_work > 0.0 && few.energy_residual() < 2e-3);
+}
+
 /// The wave carries grains towards the outlet, and those that it throws back through the inlet count by themselves.
 #[test]
 fn a_wave_pumps_through_an_open_tube() {

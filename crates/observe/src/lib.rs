@@ -30,7 +30,7 @@ pub use columns::{COLUMNS, Column, PROFILE, WAVES};
 pub use contact_force::{ContactForce, ContactForces};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
-pub use load::{GrainContact, Load, clear_volume, grain_contacts};
+pub use load::{GrainContact, Load, clear_volume, clear_volume_of_wave, grain_contacts};
 pub use mixing::Mixing;
 pub use orientation::Orientations;
 pub use profile::{PartOfWave, ProfileBin, WaveFrameProfile, WavePart};

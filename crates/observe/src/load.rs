@@ -1,7 +1,7 @@
 //! The load on the grains: forces, and the stress that follows from them.
 
 use glam::{DMat3, DVec3};
-use peristalsis_engine::{Bodies, Ends, Simulation, Touching};
+use peristalsis_engine::{Bodies, Simulation, Touching};
 
 use crate::shape::TubeShape;
 
@@ -94,10 +94,13 @@ impl Load {
         let bodies = simulation.bodies();
         let body_force = simulation.parameters().body_force;
         let masses = &bodies.mass[..bodies.grains];
-        let weight = |mass: &f64| *mass * body_force;
-        let mut forces: Vec<DVec3> = masses.iter().map(weight).collect();
+        let weight = |(grain, mass): (usize, &f64)| match simulation.is_present(grain) {
+            true => *mass * body_force,
+            false => DVec3::ZERO,
+        };
+        let mut forces: Vec<DVec3> = masses.iter().enumerate().map(weight).collect();
         let mut torques = vec![DVec3::ZERO; bodies.grains];
-        let mut virial = kinetic_part(bodies, simulation.ends());
+        let mut virial = kinetic_part(simulation);
         for contact in grain_contacts(simulation) {
             let Touching {
                 first,
@@ -123,10 +126,10 @@ impl Load {
 }
 
 /// sum m dv dv of the grains, dv counted from their mean velocity.
-fn kinetic_part(bodies: &Bodies, ends: Option<&Ends>) -> DMat3 {
-    let waits = |grain: usize| ends.is_some_and(|ends| ends.waits(grain));
+fn kinetic_part(simulation: &Simulation) -> DMat3 {
+    let bodies = simulation.bodies();
     let grains = || {
-        let present = (0..bodies.grains).filter(|grain| !waits(*grain));
+        let present = (0..bodies.grains).filter(|&grain| simulation.is_present(grain));
         present.map(|grain| (&bodies.mass[grain], &bodies.velocity[grain]))
     };
     let mass: f64 = grains().map(|(mass, _)| mass).sum();
@@ -144,16 +147,34 @@ fn dyad(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// Volume that the wall's spheres leave clear, the integral of pi (R - d_w/2)^2 along the tube, R to their centres and d_w
-/// their diameter \[d^3\].
+/// Volume that the wall's spheres leave clear, the integral of pi (R - d_w/2)^2 along the tube, between its ends where it is
+/// open; R to their centres and d_w their diameter \[d^3\].
 pub fn clear_volume(simulation: &Simulation) -> f64 {
+    clear_volume_along(simulation, simulation.length())
+}
+
+/// The same of a wavelength, the mean over those of the wall: the ends of an open tube do not count \[d^3\].
+pub fn clear_volume_of_wave(simulation: &Simulation) -> f64 {
+    let wall = simulation.wall();
+    clear_volume_along(simulation, wall.length()) / f64::from(wall.waves())
+}
+
+/// The same from where z is 0, of an open tube from its inlet, along so much of the tube \[d^3\].
+fn clear_volume_along(simulation: &Simulation, length: f64) -> f64 {
     let wall = simulation.wall();
     let shape = TubeShape::of(simulation);
     let half = 0.5 * wall.sphere_diameter();
     let places = (PLACES_A_WAVE * f64::from(wall.waves())).max(1.0);
-    let spacing = wall.length() / places;
+    let spacing = length / places;
+    let from_outlet = simulation.ends().is_some() && wall.heading() < 0.0;
     let area = |place: u32| {
-        let clear = (shape.radius((f64::from(place) + 0.5) * spacing) - half).max(0.0);
+        let along = (f64::from(place) + 0.5) * spacing;
+        let z = if from_outlet {
+            wall.length() - along
+        } else {
+            along
+        };
+        let clear = (shape.radius(z) - half).max(0.0);
         core::f64::consts::PI * clear * clear
     };
     (0..places as u32).map(area).sum::<f64>() * spacing

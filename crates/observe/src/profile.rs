@@ -29,6 +29,8 @@ struct Sums {
     least_radius: f64,
     largest_radius: f64,
     looks: f64,
+    /// Those between the ends of the tube, part of a bin counted in part: all of a periodic one.
+    in_tube: f64,
     wall: WallSums,
 }
 
@@ -49,6 +51,8 @@ struct WallSums {
     spheres: f64,
     /// Places looked at, samples times waves.
     looks: f64,
+    /// Those between the ends of the tube.
+    in_tube: f64,
 }
 
 impl WallSums {
@@ -60,6 +64,7 @@ impl WallSums {
         self.axial_velocity += other.axial_velocity;
         self.spheres += other.spheres;
         self.looks += other.looks;
+        self.in_tube += other.in_tube;
     }
 
     /// Mean axial velocity of the wall's spheres; a prescribed wall has none.
@@ -81,6 +86,7 @@ impl Sums {
         self.diameter += other.diameter;
         let range = (other.least_radius, other.largest_radius);
         self.see(other.radius, range, other.looks);
+        self.in_tube += other.in_tube;
         self.wall.add(&other.wall);
     }
 
@@ -162,7 +168,7 @@ impl Outline {
     }
 }
 
-/// One bin of a profile; values are NaN where no grain was seen.
+/// One bin of a profile; values are NaN where no grain was seen, and all but the radii where the tube has ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProfileBin {
     /// Middle of the bin: (z - c t)/lambda folded to \[0, 1), z along the wave.
@@ -258,6 +264,9 @@ impl WaveFrameProfile {
                 }
             }
         }
+        for (bin, sums) in last.iter_mut().enumerate() {
+            sums.in_tube += places_in_tube(view.simulation, bin, bins);
+        }
         let bodies = view.simulation.bodies();
         let grains = bodies.position.iter().zip(&bodies.velocity);
         let sizes = bodies.mass.iter().zip(&bodies.diameter);
@@ -283,8 +292,9 @@ impl WaveFrameProfile {
         let wall = simulation.wall();
         let (heading, cycles) = (wall.heading(), wall.cycles());
         let wavelength = wall.wavelength();
-        for sums in last.iter_mut() {
+        for (bin, sums) in last.iter_mut().enumerate() {
             sums.wall.looks += f64::from(wall.waves());
+            sums.wall.in_tube += places_in_tube(simulation, bin, bins);
         }
         // The first piece goes on from the sums so far: where it is the only one, nothing is rounded once more.
         let so_far: Vec<WallSums> = last.iter().map(|sums| sums.wall).collect();
@@ -358,7 +368,7 @@ impl WaveFrameProfile {
                     let groups = groups.iter().map(|group| value(&group[bin]));
                     (value(&total), standard_error(groups))
                 };
-                let per_length = |wall: &WallSums| 1.0 / (wall.looks * bin_width);
+                let per_length = |wall: &WallSums| 1.0 / (wall.in_tube * bin_width);
                 let (before, after) = ((bin + self.bins - 1) % self.bins, (bin + 1) % self.bins);
                 let radius = mean_radius(bin);
                 let slope = (mean_radius(after) - mean_radius(before)) / (2.0 * bin_width);
@@ -368,7 +378,7 @@ impl WaveFrameProfile {
                 };
                 ProfileBin {
                     position: (bin as f64 + 0.5) / self.bins as f64,
-                    density: with_error(&|sums| sums.number / (sums.looks * bin_width)),
+                    density: with_error(&|sums| sums.number / (sums.in_tube * bin_width)),
                     axial_velocity: with_error(&Sums::velocity),
                     temperature: with_error(&Sums::temperature),
                     diameter: with_error(&|sums| sums.diameter / sums.number),
@@ -407,6 +417,23 @@ impl WaveFrameProfile {
 fn bin_of(position: f64, bins: usize) -> usize {
     let folded = position - floor(position);
     ((folded * bins as f64) as usize).min(bins - 1)
+}
+
+/// Places of a bin between the ends of the tube now, one a wave in a periodic one.
+fn places_in_tube(simulation: &Simulation, bin: usize, bins: usize) -> f64 {
+    let wall = simulation.wall();
+    if simulation.ends().is_none() {
+        return f64::from(wall.waves());
+    }
+    let (whole, width) = (wall.length(), wall.wavelength() / bins as f64);
+    let of_wave = |wave: u32| {
+        let position = bin as f64 / bins as f64 + f64::from(wave) + wall.cycles();
+        // From the inlet to where the bin begins; it may reach round to the inlet again.
+        let begin = (position * wall.wavelength()).rem_euclid(whole);
+        let before_outlet = (simulation.length() - begin).clamp(0.0, width);
+        (before_outlet + (begin + width - whole).max(0.0)) / width
+    };
+    (0..wall.waves()).map(of_wave).sum()
 }
 
 /// Sums of sums.

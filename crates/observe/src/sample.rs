@@ -10,8 +10,10 @@ use crate::view::View;
 
 /// Observables of one interval of time, in units of d, m, t; flow is positive along the wave.
 ///
-/// Rates (flow, powers) are means over the interval; the others are values at its end. Fields without a suffix count the
-/// grains that are inside the tube at the end of the interval, `_raw` all of them.
+/// Rates (flow, powers) are means over the interval; the others are values at its end. Flow, displacements, momentum and the
+/// power of the body force are those of the grains inside the tube at the end of the interval, `_raw` those of all.
+/// Energies, temperature and contacts are those of all: escaped grains belong to the balance of energy. Grains that wait
+/// outside an open tube count nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sample {
     /// End of the interval \[t\].
@@ -32,9 +34,9 @@ pub struct Sample {
     pub kinetic_energy: f64,
     /// sum I omega^2/2 of the grains.
     pub rotational_energy: f64,
-    /// `sum m |v - <v>|^2/(3 N)` of the grains, `<v>` their mean velocity.
+    /// `sum m |v - <v>|^2/(3 N)` of the grains, escaped ones too, `<v>` their mean velocity.
     pub granular_temperature: f64,
-    /// Mean number of contacts of a grain, wall included.
+    /// Mean number of contacts of a grain, escaped ones too, wall included.
     pub contacts: f64,
     /// Part of the grains' contacts that slide; NaN without contacts.
     pub sliding_fraction: f64,
@@ -52,7 +54,8 @@ pub struct Sample {
     pub wall_axial_force: f64,
     /// Mean power that wall or drive put in.
     pub wall_power: f64,
-    /// Mean power of the body force on the grains: negative where they are pumped against it.
+    /// Mean power of the body force on the grains inside: negative where they are pumped against it. Of the body force across
+    /// the tube the part on escaped grains is taken from their velocities at the end.
     pub body_power: f64,
     /// Mean power lost in contacts, drag and dashpots.
     pub dissipated_power: f64,
@@ -60,11 +63,11 @@ pub struct Sample {
     pub potential_energy: f64,
     /// Elastic energy of contacts.
     pub contact_energy: f64,
-    /// |what the energy ledger misses| over the integral of |power that entered|.
+    /// |what the energy ledger misses| over what entered, see [`Ledger::relative_residual`].
     pub energy_residual: f64,
-    /// Axial momentum of the grains along the wave.
+    /// Axial momentum of the grains inside, along the wave.
     pub axial_momentum: f64,
-    /// Angular momentum of the grains about the axis, spin included.
+    /// Angular momentum of the grains inside about the axis, spin included.
     pub angular_momentum: f64,
     /// Kinetic energy of an elastic wall.
     pub wall_kinetic_energy: f64,
@@ -266,7 +269,10 @@ impl Sample {
             inside,
             wall_axial_force: heading * tally.wall_axial_force,
             wall_power: (ledger.input() - before.ledger.input()) / interval,
-            body_power: (ledger.body_work - before.ledger.body_work) / interval,
+            body_power: (ledger.body_work
+                - before.ledger.body_work
+                - sums.escaped_work(view, interval))
+                / interval,
             dissipated_power: (ledger.dissipated() - before.ledger.dissipated()) / interval,
             potential_energy: tally.potential_energy(),
             contact_energy: tally.contact_energy,
@@ -294,7 +300,7 @@ impl Sample {
 
 /// Sums over the grains, in one pass: each waits for its own last addition only, so that all take hardly longer than one.
 ///
-/// The first ones are of the grains inside; along +z unless said otherwise.
+/// Along +z unless said otherwise.
 #[derive(Default)]
 struct GrainSums {
     inside: f64,
@@ -304,13 +310,16 @@ struct GrainSums {
     /// Displacements since the start along the wave, and their squares.
     displaced: f64,
     displaced_squared: f64,
+    axial_momentum: f64,
+    angular_momentum: f64,
+    /// Mass times displacement in the interval and momentum of the grains that have escaped.
+    escaped_moved: f64,
+    escaped_momentum: DVec3,
     /// From here on of all grains.
     moved_raw: f64,
     kinetic_energy: f64,
     rotational_energy: f64,
     velocity: DVec3,
-    axial_momentum: f64,
-    angular_momentum: f64,
 }
 
 impl GrainSums {
@@ -337,15 +346,27 @@ impl GrainSums {
                 let since_start = heading * (to[grain] - starts[grain]);
                 sums.displaced += since_start;
                 sums.displaced_squared += since_start * since_start;
+                sums.axial_momentum += mass * velocity.z;
+                sums.angular_momentum +=
+                    mass * (position.x * velocity.y - position.y * velocity.x) + inertia * spin.z;
+            } else if view.simulation.is_present(grain) {
+                sums.escaped_moved += mass * moved;
+                sums.escaped_momentum += mass * velocity;
+            } else {
+                continue;
             }
             sums.kinetic_energy += 0.5 * mass * velocity.length_squared();
             sums.rotational_energy += 0.5 * inertia * spin.length_squared();
             sums.velocity += velocity;
-            sums.axial_momentum += mass * velocity.z;
-            sums.angular_momentum +=
-                mass * (position.x * velocity.y - position.y * velocity.x) + inertia * spin.z;
         }
         sums
+    }
+
+    /// Work of the body force on the grains that have escaped, in an interval of this length.
+    fn escaped_work(&self, view: &View<'_>, interval: f64) -> f64 {
+        let body_force = view.simulation.parameters().body_force;
+        let across = (interval * self.escaped_momentum).with_z(self.escaped_moved);
+        body_force.dot(across)
     }
 }
 
@@ -359,16 +380,15 @@ fn variance(number: f64, sum: f64, sum_of_squares: f64) -> f64 {
 
 /// Mass of the grains between the ends of an open tube, of all grains of a periodic one \[m\].
 fn hold_up(simulation: &Simulation) -> f64 {
-    let (bodies, ends) = (simulation.bodies(), simulation.ends());
-    let present = |grain: &usize| ends.is_none_or(|ends| !ends.waits(*grain));
-    let present = (0..bodies.grains).filter(present);
+    let bodies = simulation.bodies();
+    let present = (0..bodies.grains).filter(|&grain| simulation.is_present(grain));
     present.map(|grain| bodies.mass[grain]).sum()
 }
 
 /// `sum m |v - <v>|^2/(3 N)` for the mean velocity `<v>`; 0 without grains.
 fn granular_temperature(simulation: &Simulation, mean: DVec3) -> f64 {
-    let (bodies, ends) = (simulation.bodies(), simulation.ends());
-    let number = bodies.grains - ends.map_or(0, Ends::waiting);
+    let bodies = simulation.bodies();
+    let number = bodies.grains - simulation.ends().map_or(0, Ends::waiting);
     if number == 0 {
         return 0.0;
     }
@@ -376,7 +396,7 @@ fn granular_temperature(simulation: &Simulation, mean: DVec3) -> f64 {
         .iter()
         .zip(&bodies.mass)
         .enumerate()
-        .filter(|(grain, _)| ends.is_none_or(|ends| !ends.waits(*grain)))
+        .filter(|(grain, _)| simulation.is_present(*grain))
         .map(|(_, (velocity, mass))| mass * (*velocity - mean).length_squared())
         .sum();
     sum / (3.0 * number as f64)

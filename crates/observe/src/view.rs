@@ -18,9 +18,7 @@ impl<'a> View<'a> {
     pub fn of(simulation: &'a Simulation) -> Self {
         let shape = TubeShape::of(simulation);
         let bodies = simulation.bodies();
-        let ends = simulation.ends();
-        let waits = |grain| ends.is_some_and(|ends: &Ends| ends.waits(grain));
-        let inside = |grain| !has_escaped(bodies, grain, &shape) && !waits(grain);
+        let inside = |grain| !has_escaped(bodies, grain, &shape) && simulation.is_present(grain);
         let inside = (0..bodies.grains).map(inside);
         Self {
             simulation,

@@ -4,13 +4,14 @@ use glam::DVec3;
 use peristalsis_engine::wall::{
     DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall,
 };
-use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
+use peristalsis_engine::{Bodies, Integrator, OpenEnds, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
     AxialDispersion, COLUMNS, Column, ContactForce, ContactForces, FaultKind, Observer, PROFILE,
     Quantity, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
+use peristalsis_physics::ends::Inlet;
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
 
 const LATTICE: Lattice = Lattice {
@@ -103,6 +104,68 @@ fn a_grain_outside_counts_in_the_raw_columns_only() {
     assert!((sample.flow_rate_ratio_raw - 0.35).abs() < 1e-12);
     assert!((sample.flow_rate - 1.5 / 20.0).abs() < 1e-12);
     assert!((sample.flow_rate_raw - 1.4 / 20.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_body_force_works_on_the_grains_inside() {
+    for heading in [1.0, -1.0] {
+        let mut bodies = free_flight(heading).bodies().clone();
+        bodies.position[3].x = 8.0;
+        let body_force = DVec3::new(0.0, 0.02, -0.01);
+        let parameters = Parameters {
+            body_force,
+            ..parameters()
+        };
+        let mut simulation = Simulation::new(bodies, wall(heading, 0.5), parameters);
+        let mut observer = Observer::new(&simulation);
+        simulation.advance(20).unwrap();
+        let sample = observer.sample(&View::of(&simulation));
+        assert_eq!(sample.escaped, 1.0);
+        // After the time 1 three grains at 0.5 have fallen from rest across, and their mean axial velocity was 0.495. That
+        // across of the fourth counts with its velocity at the end, twice the mean.
+        let inside = 3.0 * (-0.01 * 0.495 + 0.02 * 0.01);
+        assert!((sample.body_power - (inside - 0.02 * 0.01)).abs() < 1e-12);
+        assert!((sample.axial_momentum - heading * 3.0 * 0.49).abs() < 1e-12);
+        assert!(
+            (sample.kinetic_energy - 0.5 * (3.0 * 0.49 * 0.49 + 0.02 + 0.11 * 0.11 + 4.0 * 4e-4))
+                .abs()
+                < 1e-12
+        );
+    }
+}
+
+#[test]
+fn the_profile_of_an_open_tube_is_that_between_its_ends() {
+    for heading in [1.0, -1.0] {
+        let ends = OpenEnds {
+            heading,
+            inlet: Inlet {
+                head: 10.0,
+                length: 3.0,
+                feed_rate: Some(0.0),
+                velocity: 0.0,
+                waiting: 0,
+            },
+            seed: 1,
+        };
+        let mut bodies = free_flight(heading).bodies().clone();
+        bodies.position.iter_mut().for_each(|place| place.z += 0.1);
+        let closed = Simulation::new(bodies, wall(heading, 0.5), parameters());
+        let simulation = closed.open(ends, &[]).unwrap();
+        assert_eq!(simulation.length(), 16.0);
+        let mut profile = WaveFrameProfile::new(20, 2);
+        profile.add(&View::of(&simulation));
+        let bins = profile.late(1.0, 10.0);
+        // From 6 on in a wavelength only the first wave is in the tube. Grains: 0.2, 3.1, 8.1 and 13.1 from the inlet, or 6.9
+        // and 11.9.
+        let found = |from_inlet: f64| bins[(2.0 * from_inlet) as usize].density.0;
+        match heading > 0.0 {
+            true => assert_eq!([0.2, 3.1, 8.1].map(found), [1.0, 2.0, 2.0]),
+            false => assert_eq!([1.9, 6.9, 3.1].map(found), [1.0, 2.0, 0.0]),
+        }
+        let grains: f64 = bins.iter().map(|bin| bin.density.0).sum();
+        assert_eq!(grains, if heading > 0.0 { 5.0 } else { 3.0 });
+    }
 }
 
 #[test]

@@ -208,9 +208,19 @@ impl RunFolder {
         })
     }
 
-    /// Whether the folder has a summary.
-    pub fn has_summary(&self) -> bool {
-        self.file(SUMMARY).is_file()
+    /// Whether the folder has the results of this run as it stands: those of a state before, or of an interruption, are not.
+    pub fn has_results_of(&self, run: &Run) -> bool {
+        let interrupted = serde_json::to_value(Status::Interrupted).ok();
+        self.summary().is_some_and(|summary| {
+            summary["steps"] == run.simulation().step()
+                && Some(&summary["status"]) != interrupted.as_ref()
+        })
+    }
+
+    /// The summary in the folder, if one can be read.
+    fn summary(&self) -> Option<serde_json::Value> {
+        let text = std::fs::read_to_string(self.file(SUMMARY)).ok()?;
+        serde_json::from_str(&text).ok()
     }
 
     /// The files that its run may leave besides figures.
@@ -221,8 +231,7 @@ impl RunFolder {
 
     /// Why the run in the folder diverged, if its summary says that it did.
     pub fn divergence(&self) -> Option<String> {
-        let text = std::fs::read_to_string(self.file(SUMMARY)).ok()?;
-        let summary: serde_json::Value = serde_json::from_str(&text).ok()?;
+        let summary = self.summary()?;
         let diverged = serde_json::to_value(Status::Diverged).ok()?;
         (summary["status"] == diverged).then(|| {
             summary["message"]

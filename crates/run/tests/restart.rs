@@ -106,13 +106,18 @@ fn a_folder_goes_on_to_the_same_bits() {
         for _ in 0..3 {
             run.advance().unwrap();
         }
-        folder.save_state(&run).unwrap();
+        let summary = Summary::of(&run, Status::Interrupted, None);
+        folder.finish(&run, &summary).unwrap();
         drop(run);
         let (folder, run) = RunFolder::open(&stopped).unwrap();
         assert_eq!(run.progress().samples, 3);
         let run = finish(run);
+        // Killed here, its results would still be those of the interruption.
+        folder.save_state(&run).unwrap();
+        assert!(!folder.has_results_of(&run));
         let summary = Summary::of(&run, Status::Complete, None);
         folder.finish(&run, &summary).unwrap();
+        assert!(folder.has_results_of(&run));
 
         for name in ["timeseries.parquet", "profile.parquet", "waves.parquet"] {
             let [one, other] =

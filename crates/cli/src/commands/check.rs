@@ -155,7 +155,7 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         "the reference kernel takes no more".to_owned()
     } else {
         format!(
-            "one for each {SPHERES_OF_A_THREAD} of {} moving spheres, on {}",
+            "one for each {SPHERES_OF_A_THREAD} of {} moving spheres, at least one, on {}",
             estimate.moving_spheres,
             counted(processors(), "processor")
         )

@@ -98,8 +98,6 @@ pub struct Ends {
 pub(crate) struct Look {
     /// Whether a grain has left the tube or come in.
     pub(crate) passed: bool,
-    /// Change of sum m r by putting grains elsewhere \[m d\].
-    pub(crate) moved: DVec3,
     /// Grains that were put elsewhere, or held where they wait.
     pub(crate) placed: Vec<usize>,
 }
@@ -200,13 +198,12 @@ impl Ends {
     ) -> Look {
         let mut look = Look {
             passed: false,
-            moved: DVec3::ZERO,
             placed: Vec::new(),
         };
         // Those that wait fall a little between two looks.
         for place in 0..self.queue.len() {
             let grain = self.queue[place] as usize;
-            look.moved += self.put(bodies, grain, wall, self.parking_place(grain, wall), 0.0);
+            set(bodies, grain, self.parking_place(grain, wall), 0.0);
             look.placed.push(grain);
         }
         let length = self.length(wall);
@@ -218,7 +215,7 @@ impl Ends {
             self.count(bodies, grain, wall, along > length, time);
             self.stations[grain].waits = true;
             self.queue.push(grain as u32);
-            look.moved += self.park(bodies, grain, wall);
+            self.park(bodies, grain, wall);
             look.placed.push(grain);
             look.passed = true;
         }
@@ -270,7 +267,7 @@ impl Ends {
                 break;
             };
             let velocity = self.open.heading * self.open.inlet.velocity;
-            look.moved += self.put(bodies, grain, wall, place, velocity);
+            self.put(bodies, grain, wall, place, velocity);
             look.placed.push(grain);
             look.passed = true;
             self.stations[grain].waits = false;
@@ -320,33 +317,20 @@ impl Ends {
         }
     }
 
-    /// Brings a grain to where it waits; answers the change of m r.
-    fn park(&mut self, bodies: &mut Bodies, grain: usize, wall: &Wall) -> DVec3 {
+    /// Brings a grain to where it waits.
+    fn park(&mut self, bodies: &mut Bodies, grain: usize, wall: &Wall) {
         let place = self.parking_place(grain, wall);
-        self.put(bodies, grain, wall, place, 0.0)
+        self.put(bodies, grain, wall, place, 0.0);
     }
 
-    /// Puts a grain, with an axial velocity and without spin; answers the change of m r.
-    fn put(
-        &mut self,
-        bodies: &mut Bodies,
-        grain: usize,
-        wall: &Wall,
-        place: DVec3,
-        velocity: f64,
-    ) -> DVec3 {
-        let old = bodies.unfolded(grain, wall.length());
-        let by = (place - bodies.position[grain]).with_z(place.z - old);
-        self.stations[grain].carried += by.z;
-        bodies.position[grain] = place;
-        bodies.turns[grain] = 0;
-        bodies.velocity[grain] = DVec3::new(0.0, 0.0, velocity);
-        bodies.angular_velocity[grain] = DVec3::ZERO;
-        bodies.mass[grain] * by
+    /// Puts a grain elsewhere, with an axial velocity and without spin.
+    fn put(&mut self, bodies: &mut Bodies, grain: usize, wall: &Wall, place: DVec3, velocity: f64) {
+        self.stations[grain].carried += place.z - bodies.unfolded(grain, wall.length());
+        set(bodies, grain, place, velocity);
     }
 
     /// Where a grain waits: beside the tube, clear of its wall and of all others.
-    fn parking_place(&self, grain: usize, wall: &Wall) -> DVec3 {
+    pub(crate) fn parking_place(&self, grain: usize, wall: &Wall) -> DVec3 {
         let spacing = APART * self.largest_diameter;
         let layers = (wall.length() / spacing).floor().max(1.0) as usize;
         let mut ring = grain / layers;
@@ -364,4 +348,12 @@ impl Ends {
             radius += spacing;
         }
     }
+}
+
+/// Sets place and axial velocity of a grain that does not spin.
+fn set(bodies: &mut Bodies, grain: usize, place: DVec3, velocity: f64) {
+    bodies.position[grain] = place;
+    bodies.turns[grain] = 0;
+    bodies.velocity[grain] = DVec3::new(0.0, 0.0, velocity);
+    bodies.angular_velocity[grain] = DVec3::ZERO;
 }

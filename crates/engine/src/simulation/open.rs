@@ -37,7 +37,8 @@ impl Simulation {
 
     /// Takes out what has left the open ends, and puts in what comes. The energy that this adds is written down.
     pub(super) fn look_at_ends(&mut self) {
-        let (now, before) = ((self.step(), self.time()), self.energy());
+        let now = (self.step(), self.time());
+        let (energy, moment) = (self.energy(), self.moment());
         let (wall, bodies) = (&self.course.wall, &mut self.bodies);
         let Some(ends) = &mut self.ends else { return };
         let look = ends.look(bodies, wall, now);
@@ -53,15 +54,20 @@ impl Simulation {
         for grain in look.placed {
             self.past.forget(&self.bodies, grain);
         }
-        let exchanged = self.energy() - before;
+        let (exchanged, moved) = (self.energy() - energy, self.moment() - moment);
         let ledger = &mut self.course.ledger;
         ledger.exchanged += exchanged;
-        ledger.initial_moment += look.moved;
+        ledger.initial_moment += moved;
     }
 
     /// The ends of an open tube; `None` of a periodic one.
     pub fn ends(&self) -> Option<&Ends> {
         self.ends.as_deref()
+    }
+
+    /// Whether a sphere does not wait outside an open tube.
+    pub fn is_present(&self, sphere: usize) -> bool {
+        self.ends.as_ref().is_none_or(|ends| !ends.waits(sphere))
     }
 
     /// Length of the tube \[d\]: the period, or the distance between its open ends.
@@ -72,10 +78,14 @@ impl Simulation {
 
     /// z of a grain as it has moved since the start: with turns round the tube, without being put in again \[d\].
     pub fn travelled(&self, grain: usize) -> f64 {
-        let unfolded = self.bodies.unfolded(grain, self.wall().length());
+        let unfolded = || self.bodies.unfolded(grain, self.wall().length());
         match self.ends() {
-            Some(ends) => unfolded - ends.carried(grain),
-            None => unfolded,
+            // What it falls between two looks is no motion of it.
+            Some(ends) if !self.is_present(grain) => {
+                ends.parking_place(grain, self.wall()).z - ends.carried(grain)
+            }
+            Some(ends) => unfolded() - ends.carried(grain),
+            None => unfolded(),
         }
     }
 }

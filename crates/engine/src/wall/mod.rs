@@ -13,7 +13,7 @@ use core::ops::Range;
 
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
-use peristalsis_physics::wall::{Lattice, RadiusWave};
+use peristalsis_physics::wall::{Contraction, Lattice, RadiusWave};
 
 use self::memory::WallMemory;
 use self::sums::{WallSums, WallTerms};
@@ -184,8 +184,21 @@ impl Wall {
     /// stress control the inward force is largest.
     pub fn throat(&self) -> f64 {
         match self {
-            Self::Prescribed(_) => 0.25,
+            // The phase runs against the position.
+            Self::Prescribed(wall) => match &wall.wave().contraction {
+                Contraction::Table(table) => 1.0 - table.narrowest(),
+                Contraction::Wave(_) | Contraction::Segments(_) => 0.25,
+            },
             Self::Elastic(_) => 0.75,
+        }
+    }
+
+    /// Place of the belly, where the tube is widest: of a waveform without a table half a wavelength from the throat
+    /// \[lambda\].
+    pub fn belly(&self) -> f64 {
+        match self.wave().map(|wave| &wave.contraction) {
+            Some(Contraction::Table(table)) => 1.0 - table.widest(),
+            _ => self.throat() + 0.5,
         }
     }
 

@@ -68,6 +68,27 @@ impl RadiusTable {
         (0..self.number).map(steepness).fold(0.0, f64::max)
     }
 
+    /// Phase at which the radius is least, in the middle of the first stretch where it is \[cycles\].
+    pub fn narrowest(&self) -> f64 {
+        self.middle_of(-1.0)
+    }
+
+    /// Phase at which the radius is largest, in the middle of the first stretch where it is \[cycles\].
+    pub fn widest(&self) -> f64 {
+        self.middle_of(0.0)
+    }
+
+    /// Middle of the first stretch of points with the value -1 or 0, which some point has and some has not.
+    fn middle_of(&self, value: f64) -> f64 {
+        let has = |point: &usize| self.values[point % self.number] == value;
+        let before = |point: usize| point + self.number - 1;
+        let first = (0..self.number).find(|point| has(point) && !has(&before(*point)));
+        let first = first.unwrap_or_default();
+        let stretch = (first..first + self.number).take_while(|point| has(&(point + 1)));
+        let length = stretch.fold(0.0, |sum, point| sum + self.piece(point % self.number).0);
+        (self.phases[first] + 0.5 * length).fract()
+    }
+
     /// Length and rise of the curve from a point to the next, round the end.
     fn piece(&self, point: usize) -> (f64, f64) {
         let next = (point + 1) % self.number;
@@ -143,6 +164,22 @@ mod tests {
             let apart = 2.0 * value + 1.0 - sine(phase);
             assert!(apart.abs() < 1e-3, "{phase}: {apart}");
         }
+    }
+
+    #[test]
+    fn a_flat_throat_is_narrowest_in_its_middle() {
+        let of = |phases: &[f64], radii: &[f64]| {
+            let table = RadiusTable::new(phases, radii).unwrap();
+            [table.narrowest(), table.widest()]
+        };
+        let near = |found: [f64; 2], expected: [f64; 2]| {
+            let far = found.into_iter().zip(expected).map(|(a, b)| (a - b).abs());
+            assert!(far.into_iter().all(|far| far < 1e-12), "{found:?}");
+        };
+        near(of(&[0.1, 0.3, 0.7], &[1.0, 2.0, 1.5]), [0.1, 0.3]);
+        // Flat from 0.9 over the end to 0.2; the belly at 0.5 comes before the one at 0.7.
+        let radii = [1.0, 1.0, 2.0, 1.5, 2.0, 1.0];
+        near(of(&[0.0, 0.2, 0.5, 0.6, 0.7, 0.9], &radii), [0.05, 0.5]);
     }
 
     #[test]

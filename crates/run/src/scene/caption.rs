@@ -85,9 +85,12 @@ impl Caption {
 fn marks(scene: &PictureScene, frame: &Frame) -> Vec<PlaceMark> {
     let wavelength = scene.wall.wavelength();
     let heading = scene.wall.heading();
-    let throat = scene.wall.throat();
     let mut marks = Vec::new();
-    for (position, label) in [(throat, "throat"), (throat + 0.5, "belly")] {
+    let places = [
+        (scene.wall.throat(), "throat"),
+        (scene.wall.belly(), "belly"),
+    ];
+    for (position, label) in places {
         // z of the picture, along the wave, is lambda (position + cycles) + a whole number of lambda - shift.
         let along = wavelength * (position + cycles(frame)) - heading * scene.shift(cycles(frame));
         let from_left = along + if heading < 0.0 { scene.shown } else { 0.0 };

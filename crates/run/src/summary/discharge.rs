@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_observe::{Sample, clear_volume};
+use peristalsis_observe::{Sample, clear_volume_of_wave};
 
 use super::late::error_of;
 use super::mean_of;
@@ -40,9 +40,8 @@ impl Discharge {
         let (passed, variance) = (times.number(), times.variance());
         let rate = measured(|sample| sample.discharge_rate);
         let refill_efficiency = configuration.drive.period().map(|period| {
-            let stroke = clear_volume(simulation) / f64::from(configuration.tube.waves);
             // A grain of mass m has the volume pi m/6.
-            let part = period * PI / 6.0 / stroke;
+            let part = period * PI / 6.0 / clear_volume_of_wave(simulation);
             (part * rate.0, part * rate.1)
         });
         Some(Self {

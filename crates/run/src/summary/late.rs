@@ -60,7 +60,7 @@ pub(super) fn pressed(late: &[Sample]) -> f64 {
 pub struct Pumping {
     /// The pressure rise over a wavelength that it stands for, Dp = -N m g lambda/(L pi a^2) \[m/(d t^2)\], m the mean mass.
     pub pressure_rise: f64,
-    /// Useful power of the flow against the body force, -g sum m v_z; negative where the grains go with it.
+    /// Useful power of the flow against the body force, -g sum m v_z over the grains inside; negative where they go with it.
     pub useful_power: (f64, f64),
     /// Efficiency: useful power over the power of wall or drive; NaN unless both are positive, for then nothing is pumped. Above 1
     /// stored energy was spent.

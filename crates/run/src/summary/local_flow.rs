@@ -2,7 +2,7 @@
 
 use peristalsis_observe::ProfileBin;
 
-/// Part of a wavelength that throat and belly each take.
+/// Part of a wavelength that throat and belly each take, to whole bins: the middle one and a tenth of them on either side.
 const PART: f64 = 0.2;
 /// Part of the range of radii within which they are the same: above rounding, and below what parts a sine's bins.
 const SAME: f64 = 1e-10;
@@ -21,12 +21,12 @@ pub(super) struct LocalFlow {
 }
 
 impl LocalFlow {
-    /// The fifth of the wavelength about the bin in which the tube is narrowest, or the middle of a flat throat.
+    /// About a fifth of the wavelength about the bin in which the tube is narrowest, or the middle of a flat throat.
     pub(super) fn throat(profile: &[ProfileBin]) -> Self {
         Self::about(profile, |bin| -bin.radius)
     }
 
-    /// The fifth of the wavelength about the bin in which the tube is widest, or the middle of a flat belly.
+    /// About a fifth of the wavelength about the bin in which the tube is widest, or the middle of a flat belly.
     pub(super) fn belly(profile: &[ProfileBin]) -> Self {
         Self::about(profile, |bin| bin.radius)
     }
@@ -40,6 +40,8 @@ impl LocalFlow {
         let reach = (0.5 * PART * bins as f64) as usize;
         let near: Vec<&ProfileBin> = (0..2 * reach + 1)
             .filter_map(|step| profile.get((middle + bins + step - reach) % bins))
+            // Beyond an end of the tube there is none.
+            .filter(|bin| !bin.density.0.is_nan())
             .collect();
         let grains: f64 = near.iter().map(|bin| bin.density.0).sum();
         let over_grains = |value: fn(&ProfileBin) -> f64| {

@@ -65,7 +65,7 @@ pub struct Summary {
     pub escaped_most: u64,
     /// Largest overlap of a grain's contact at any step \[d\].
     pub largest_overlap: f64,
-    /// |energy that the ledger misses| over the integral of |power that entered|.
+    /// |energy that the ledger misses| over what entered: `Ledger::relative_residual` of the engine.
     pub energy_residual: f64,
     /// Pumping against a body force, where there is one.
     pub pumping: Option<Pumping>,
@@ -135,7 +135,9 @@ impl Summary {
         let profile = late_profile(run);
         let part = |part| recorder.profile().late_part(fraction, part);
         let whole = part(WavePart::Whole);
-        let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
+        let pressures = profile.iter().map(|bin| bin.wall_pressure.0);
+        // Beyond an end there is no wall that they could press on.
+        let pressures: Vec<f64> = pressures.filter(|it| !it.is_nan()).collect();
         let escaped = |sample: &Sample| sample.escaped as u64;
         let faults = recorder.wall_faults().iter();
         Self {
@@ -151,8 +153,8 @@ impl Summary {
             energy_residual: simulation.energy_residual(),
             pumping: Pumping::of(configuration, length, late),
             discharge: Discharge::of(run, late),
-            wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
-            wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
+            wall_pressure: pressures.iter().sum::<f64>() / pressures.len() as f64,
+            wall_pressure_largest: pressures.into_iter().fold(f64::NAN, f64::max),
             wear: Wear::of(configuration, length, &whole, &profile),
             wall_torque: wall_torque(samples, late),
             mixed: MixedGrains::of(samples, late, of_period),

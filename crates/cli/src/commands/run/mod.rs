@@ -261,10 +261,10 @@ fn go_on_in(
 fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Result<Run, Failure> {
     let length = match arguments.configuration.length() {
         Some(length) => length,
-        // A full disk may have taken what comes after the state.
+        // A full disk or a kill may have taken what comes after the state.
         None if run.is_complete()
             && !arguments.csv
-            && (source.is_file() || RunFolder::named(source).has_summary()) =>
+            && (source.is_file() || RunFolder::named(source).has_results_of(&run)) =>
         {
             let (folder, reason) = (source.to_owned(), "it is complete".to_owned());
             return Err(RunError::NothingToResume { folder, reason }.into());

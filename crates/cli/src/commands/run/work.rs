@@ -41,15 +41,12 @@ pub(super) struct Work {
 
 impl Work {
     /// Opens the trajectory, goes on with it or begins it, and saves the state of a run that is new: from here on nothing
-    /// is lost.
+    /// is lost. The state comes last, for what goes on from it goes on with the files that are there.
     pub(super) fn begin(
         arguments: &RunArguments,
         folder: RunFolder,
         mut run: Run,
     ) -> Result<Self, Failure> {
-        if !folder.has_state() {
-            folder.save_state(&run)?;
-        }
         let trajectory = open_trajectory(arguments, folder.path(), &mut run)?;
         // Not before: a trajectory that cannot go on leaves the run as it is.
         if arguments.resume.is_some() && arguments.configuration.length().is_some() {
@@ -58,6 +55,9 @@ impl Work {
         if arguments.csv {
             // From here on it is renewed whenever the tables are, also where the run is gone on with after a kill.
             folder.write_csv(&run)?;
+        }
+        if !folder.has_state() {
+            folder.save_state(&run)?;
         }
         Ok(Self {
             run,
