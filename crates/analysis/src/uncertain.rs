@@ -2,6 +2,7 @@
 
 use crate::columns::mean_and_scatter;
 use crate::numerics::minimum::crossing;
+use crate::numerics::student;
 use serde::{Deserialize, Serialize};
 
 /// Standard deviations of the narrow interval: 68.27 per cent.
@@ -82,6 +83,21 @@ impl Uncertain {
         Self::with_intervals(value, error, |deviations| {
             Interval::new(value - deviations * error, value + deviations * error)
         })
+    }
+
+    /// A mean or the like whose error is taken from the scatter of the data, with so many degrees of freedom: intervals of
+    /// Student's distribution, open without degrees of freedom.
+    pub fn student(value: f64, error: f64, degrees_of_freedom: usize) -> Self {
+        let between = |tail: f64| {
+            let reach = student::quantile(tail, degrees_of_freedom) * error;
+            Interval::new(value - reach, value + reach)
+        };
+        Self {
+            value,
+            error,
+            interval_68: between(NARROW_TAIL),
+            interval_95: between(WIDE_TAIL),
+        }
     }
 
     /// A number whose two intervals follow from the deviations, in standard errors, of a normal number at their ends.
@@ -188,6 +204,9 @@ mod tests {
         assert!(found.interval_68.contains(1.5) && !found.interval_68.contains(1.49));
         assert!((found.deviations_from(3.0) + 2.0).abs() < 1e-15);
         assert_eq!(Uncertain::normal(1.0, 0.0).deviations_from(1.0), 0.0);
+        let few = Uncertain::student(2.0, 0.5, 2);
+        assert!((few.interval_95.upper - 2.0 - 0.5 * 4.3027).abs() < 1e-4);
+        assert!((few.interval_68.length() - 1.3213).abs() < 1e-3);
         let ratio = Uncertain::normal(libm::log(10.0), 0.1).exponential();
         assert!((ratio.error - 1.0).abs() < 1e-12);
         let product = ratio.interval_95.lower * ratio.interval_95.upper;

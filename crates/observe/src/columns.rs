@@ -106,6 +106,7 @@ pub const COLUMNS: &[Column] = &[
     row("body_work", "m d^2/t^2", BodyForce, "ledger: work of the body force, on escaped grains too", |s| s.ledger.body_work),
     row("rolling_dissipated", "m d^2/t^2", Rolling, "ledger: lost to rolling resistance", |s| s.ledger.rolling_dissipated),
     row("cohesion_dissipated", "m d^2/t^2", Cohesion, "ledger: lost where contacts that cohered broke", |s| s.ledger.cohesion_dissipated),
+    row("mass_flow_rate", "m/t", Always, "mass that flows along the wave, mean over the interval: sum m dz/dt over L, grains inside", |s| s.mass_flow_rate),
     row("discharge_rate", "m/t", OpenTube, "mass that leaves through the outlet, mean over the interval", |s| s.discharge_rate),
     row("return_rate", "m/t", OpenTube, "mass that leaves through the inlet, against the flow", |s| s.return_rate),
     row("feed_rate", "m/t", OpenTube, "mass that is put in at the inlet", |s| s.feed_rate),

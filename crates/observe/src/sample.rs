@@ -22,6 +22,8 @@ pub struct Sample {
     pub period: f64,
     /// J, from the displacements of the grains in the interval: sum of dz/dt over L \[1/t\].
     pub flow_rate: f64,
+    /// Mass that flows: sum of m dz/dt over L \[m/t\].
+    pub mass_flow_rate: f64,
     /// J/Jmax, Jmax = N c/L; NaN for a static wave or without grains.
     pub flow_rate_ratio: f64,
     /// J of all grains.
@@ -108,6 +110,7 @@ impl Join for Sample {
         let mean = |rate: fn(&Self) -> f64| joined(rate(self), own, rate(next), others);
         *self = Self {
             flow_rate: mean(|it| it.flow_rate),
+            mass_flow_rate: mean(|it| it.mass_flow_rate),
             flow_rate_ratio: mean(|it| it.flow_rate_ratio),
             flow_rate_raw: mean(|it| it.flow_rate_raw),
             flow_rate_ratio_raw: mean(|it| it.flow_rate_ratio_raw),
@@ -253,6 +256,7 @@ impl Sample {
             time: after.time,
             period: after.cycles,
             flow_rate: rate(sums.moved),
+            mass_flow_rate: rate(sums.mass_moved),
             flow_rate_ratio: ratio(sums.moved, inside),
             flow_rate_raw: rate(sums.moved_raw),
             flow_rate_ratio_raw: ratio(sums.moved_raw, grains),
@@ -304,8 +308,9 @@ impl Sample {
 #[derive(Default)]
 struct GrainSums {
     inside: f64,
-    /// Displacements in the interval.
+    /// Displacements in the interval, and these times the masses.
     moved: f64,
+    mass_moved: f64,
     axial_velocity: f64,
     /// Displacements since the start along the wave, and their squares.
     displaced: f64,
@@ -342,6 +347,7 @@ impl GrainSums {
             if inside {
                 sums.inside += 1.0;
                 sums.moved += moved;
+                sums.mass_moved += mass * moved;
                 sums.axial_velocity += velocity.z;
                 let since_start = heading * (to[grain] - starts[grain]);
                 sums.displaced += since_start;

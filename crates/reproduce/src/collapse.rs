@@ -8,6 +8,7 @@ use peristalsis_figures::Scale;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Tint};
 
 use crate::critical::Line;
+use crate::draft::Draft;
 use crate::exhibit::{cell_of, coloured, ends, grid, points, probability, rate_colours};
 use crate::finding::{Quantity, ReportTable};
 use crate::thresholds::{BY_CHANCE, MOST_STRETCH, OVERLAP, RESOLVED};
@@ -16,6 +17,9 @@ use crate::walls::OnWall;
 /// Searches for the best collapse, and the seed of their starts.
 const STARTS: usize = 8;
 const SEED: u64 = 20_120_331;
+/// Powers of the strain rate in corrections to scaling that are allowed for: one that fades at large rates, and one that
+/// fades at small ones.
+const CORRECTIONS: [f64; 2] = [-1.0, 1.0];
 /// First steps of the exponents.
 const STEPS: [f64; 2] = [0.3, 0.15];
 
@@ -27,6 +31,9 @@ struct Claimed {
     quality: Option<(f64, f64)>,
     /// Both exponents at once against those found, with their covariance.
     joint: Option<JointTest>,
+    /// Where that excludes them: the power of the strain rate in a correction to scaling that leaves them possible, and
+    /// their probability with it.
+    corrected: Option<(f64, f64)>,
 }
 
 /// Curves of several strain rates, and how well they collapse.
@@ -117,10 +124,24 @@ impl Curves {
         let claimed = claimed.map(|exponents| {
             let quality = collapse.quality(&with(exponents, |one| one.value)).ok();
             let both = [(0, exponents[0]), (1, exponents[1])];
+            let test = |correction: Option<f64>| {
+                let of = CollapseEstimate {
+                    correction,
+                    ..found.clone()
+                };
+                collapse.joint_test(&known, &of, &steps, &both).ok()
+            };
+            let joint = test(None);
+            let is_excluded = joint.is_some_and(|joint| joint.probability < BY_CHANCE);
+            let corrected = CORRECTIONS.into_iter().filter(|_| is_excluded);
+            let corrected =
+                corrected.filter_map(|power| Some((power, test(Some(power))?.probability)));
+            let corrected = corrected.max_by(|one, other| one.1.total_cmp(&other.1));
             Claimed {
                 exponents,
                 quality: quality.map(|found| (found.quality, found.overlap)),
-                joint: collapse.joint_test(&known, &found, &steps, &both).ok(),
+                joint,
+                corrected: corrected.filter(|(_, probability)| *probability >= BY_CHANCE),
             }
         });
         Some(Collapsed {
@@ -137,16 +158,28 @@ impl Collapsed {
         [self.found.parameters[0], self.found.parameters[1]]
     }
 
-    /// Whether both exponents of the source together are possible; `None` where that cannot be told.
+    /// Whether both exponents of the source together are possible; `None` where that cannot be told, or depends on a
+    /// correction to scaling.
     pub(crate) fn agrees(&self) -> Option<bool> {
-        let joint = self.claimed.as_ref()?.joint?;
-        Some(joint.probability >= BY_CHANCE)
+        let claimed = self.claimed.as_ref()?;
+        let agrees = claimed.joint?.probability >= BY_CHANCE;
+        (agrees || claimed.corrected.is_none()).then_some(agrees)
     }
 
-    /// Probability of the source's exponents, both at once.
+    /// Probability of the source's exponents, both at once, and what a correction to scaling makes of it.
     pub(crate) fn chance(&self) -> String {
-        let joint = self.claimed.as_ref().and_then(|claimed| claimed.joint);
-        cell_of(joint, |joint| probability(joint.probability))
+        let Some(claimed) = &self.claimed else {
+            return cell_of(None::<f64>, probability);
+        };
+        let plain = cell_of(claimed.joint, |joint| probability(joint.probability));
+        match claimed.corrected {
+            Some((power, chance)) => format!(
+                "{plain}, with a correction ~ *ε̇*^{{{}}} {}",
+                number(power, 0),
+                probability(chance)
+            ),
+            None => plain,
+        }
     }
 
     /// The exponents, S and the overlap as text.
@@ -253,6 +286,24 @@ impl Collapsed {
                 .pattern(Pattern::Dashed)
                 .weight(0.8),
         )
+    }
+}
+
+/// Says among the weaknesses on which walls the exponents of the best collapse are not to be trusted.
+pub(crate) fn distrust(draft: &mut Draft, found: &[(String, Collapsed)]) {
+    let doubted = || found.iter().filter(|(_, one)| !one.found.trusted);
+    let walls: Vec<&str> = doubted().map(|(wall, _)| wall.as_str()).collect();
+    let stretch = doubted().map(|(_, one)| one.found.stretch);
+    let stretch = number(stretch.fold(1.0, f64::max), 1);
+    if !walls.is_empty() {
+        draft.finding.weaknesses.push(format!(
+            "The best exponents are not to be trusted on {}: points lie up to {stretch} errors off one curve, or a correction \
+             could move them out of their intervals.",
+            match walls.len() == found.len() {
+                true => "any wall".to_owned(),
+                false => walls.join(", "),
+            }
+        ));
     }
 }
 

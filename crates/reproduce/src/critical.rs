@@ -300,14 +300,28 @@ pub(crate) fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
         .iter()
         .map(|one| ((one.value - mean) / one.error).powi(2));
     let chi_squared: f64 = squares.sum();
-    let freedom = (usable.len() - 1).max(1) as f64;
-    let ratio = (chi_squared / freedom).max(1.0).sqrt();
-    Some(Uncertain::normal(mean, ratio / weights.sqrt()))
+    let freedom = usable.len() - 1;
+    let ratio = (chi_squared / freedom.max(1) as f64).sqrt();
+    Some(stretched(mean, weights.powf(-0.5), ratio, freedom))
 }
 
 /// The slope of a line, its error stretched to the scatter about the line.
 pub(crate) fn slope(line: &LineFit) -> Uncertain {
-    Uncertain::normal(line.slope.value, line.slope.error * line.scale_factor())
+    let LineFit { slope, .. } = line;
+    stretched(
+        slope.value,
+        slope.error,
+        line.scale_factor(),
+        line.degrees_of_freedom,
+    )
+}
+
+/// A number whose error is stretched by a ratio above 1: it then comes from the scatter of the data.
+fn stretched(value: f64, error: f64, ratio: f64, degrees_of_freedom: usize) -> Uncertain {
+    match ratio > 1.0 {
+        true => Uncertain::student(value, ratio * error, degrees_of_freedom),
+        false => Uncertain::normal(value, error),
+    }
 }
 
 /// A critical width with half of its 95 per cent interval as its error, for bars.

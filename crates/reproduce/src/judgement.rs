@@ -8,11 +8,11 @@ use peristalsis_analysis::Uncertain;
 
 use crate::exhibit::listed;
 use crate::finding::{Statistics, Verdict, WallVerdict};
-use crate::thresholds::{AGREES_WITHIN, LARGE_ERROR, LEAST_RATES, MOST_RATES};
+use crate::thresholds::{LARGE_ERROR, LEAST_RATES, MOST_RATES};
 
-/// Whether a value agrees with the source within its errors; `None` where these are so large that hardly any would not.
+/// Whether the source's value lies in the 95 per cent interval of ours; `None` where these are so large that hardly any would not.
 pub(crate) fn agrees(found: &Uncertain, source: f64) -> Option<bool> {
-    let within = found.deviations_from(source).abs() <= AGREES_WITHIN;
+    let within = found.interval_95.contains(source);
     (!within || found.error <= LARGE_ERROR * source.abs()).then_some(within)
 }
 

@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use peristalsis_analysis::{Transition, Uncertain, mean_and_error};
+pub(crate) use peristalsis_analysis::mean_and_error;
+use peristalsis_analysis::{Transition, Uncertain};
 use peristalsis_formats::{FormatError, Table, Values};
 use peristalsis_run::THRESHOLDS;
 
@@ -326,7 +327,7 @@ pub(crate) fn longest<'b, 'a: 'b>(rows: impl IntoIterator<Item = &'b Row<'a>>) -
 }
 
 /// The mean of the finite values in a column; its standard error is the larger of two: from the errors in the column of the
-/// same name with `_error`, and from the scatter of the values. NaN where neither is known; `None` without a finite value.
+/// same name with `_error`, and from the scatter of the values, then with intervals of Student's distribution. NaN where neither is known; `None` without a finite value.
 pub(crate) fn mean(rows: &[Row<'_>], column: &str) -> Option<Uncertain> {
     mean_of(rows, |row| row.number_and_error(column))
 }
@@ -343,16 +344,18 @@ pub(crate) fn mean_of(
     let (values, errors): (Vec<f64>, Vec<f64>) = known.unzip();
     let (mean, scatter) = mean_and_error(&values);
     let squares: f64 = errors.iter().map(|error| error * error).sum();
-    // The maximum takes the one that is known where the other is not.
-    let error = (squares.sqrt() / values.len() as f64).max(scatter);
-    (!values.is_empty()).then(|| Uncertain::normal(mean, error))
+    let within = squares.sqrt() / values.len() as f64;
+    (!values.is_empty()).then(|| match within > scatter || scatter.is_nan() {
+        true => Uncertain::normal(mean, within),
+        false => Uncertain::student(mean, scatter, values.len() - 1),
+    })
 }
 
 /// The mean of a number over some rows, with its error from their scatter; not known of a single row.
 pub(crate) fn scattered<'a>(rows: &[Row<'a>], value: impl Fn(&Row<'a>) -> f64) -> Uncertain {
     let values: Vec<f64> = rows.iter().map(value).collect();
     let (mean, error) = mean_and_error(&values);
-    Uncertain::normal(mean, error)
+    Uncertain::student(mean, error, values.len().saturating_sub(1))
 }
 
 /// How much is behind some rows of one strain rate that differ in a control, which counts as the width, and in the replicate.

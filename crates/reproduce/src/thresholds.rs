@@ -40,7 +40,7 @@ pub(crate) const LEAST_JUMP_AGAINST_FORCE: f64 = 0.25;
 
 // What agrees with the source.
 
-/// Standard errors within which a value agrees with the source's: the 95 per cent interval.
+/// Standard errors of a difference below which there may be none: the 95 per cent interval of a normal number.
 pub(crate) const AGREES_WITHIN: f64 = 2.0;
 /// Error beyond which a value says nothing of the source's, as a fraction of the latter: hardly any value would disagree.
 pub(crate) const LARGE_ERROR: f64 = 0.25;

@@ -53,7 +53,7 @@ pub struct Estimate {
     pub number_density: f64,
     /// Length of the tube \[d\].
     pub length: f64,
-    /// Clear opening of a prescribed wall at the throats and in the bellies, by the drive at the start \[d\].
+    /// Clear opening of a prescribed wall at the throats and in the bellies, where the wave is highest \[d\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clear_openings: Option<[f64; 2]>,
     /// Wave period \[t\].
@@ -75,8 +75,10 @@ pub struct Estimate {
     pub steps_per_contact: f64,
     /// e of two grains of the mean diameter that meet at the speed of the wave.
     pub restitution: f64,
-    /// J/Jmax of a Newtonian fluid in this tube, without load.
+    /// J/Jmax of a Newtonian fluid in this tube, phi = b/a, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
+    /// The same in the clear bore, phi = b/(a - d/2).
+    pub newtonian_flow_rate_ratio_clear_bore: Option<f64>,
     /// The estimate in SI, where the configuration says its units.
     pub si: Option<SiEstimate>,
     /// Seconds that packing the grains is expected to take, from the packing of a trial on this machine.
@@ -142,6 +144,7 @@ pub fn estimate_by(
     }
     warnings.extend(no_memory(configuration));
     let si = configuration.units.as_ref();
+    let newtonian = newtonian_reference(configuration);
     Ok(Estimate {
         grains: configuration.grains.number,
         waiting_grains: configuration.inlet.map(|inlet| inlet.waiting),
@@ -150,7 +153,7 @@ pub fn estimate_by(
         volume_fraction: configuration.volume_fraction(),
         number_density: configuration.number_density(),
         length: configuration.tube.length(),
-        clear_openings: clear_openings(configuration),
+        clear_openings: clear_openings(&configuration.at_its_hardest()),
         period: configuration.drive.period(),
         periods: configuration.run.periods,
         wavelengths: scheduled_wavelengths(configuration),
@@ -160,7 +163,8 @@ pub fn estimate_by(
         contact_time: contact_time(configuration),
         steps_per_contact: contact_time(configuration) / configuration.run.time_step,
         restitution: restitution_at_wave_speed(configuration),
-        newtonian_flow_rate_ratio: newtonian_reference(configuration).map(|reference| reference.0),
+        newtonian_flow_rate_ratio: newtonian.map(|fluid| fluid.0),
+        newtonian_flow_rate_ratio_clear_bore: newtonian.and_then(|fluid| fluid.1),
         si: si.map(|units| SiEstimate::of(configuration, units)),
         packing_seconds: trial.packing_seconds,
         expected_seconds: trial.expected_seconds,

@@ -15,7 +15,7 @@ pub(crate) const LATER_RESULTS: [&str; 17] = [
     "back_flow",
     "pressed",
     "contact_force_",
-    "mass_flow_rate_si_error",
+    "mass_flow_rate",
     "discharge",
     "return_rate",
     "hold_up",

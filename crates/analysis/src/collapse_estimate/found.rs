@@ -21,6 +21,20 @@ const MOST_STRETCH: f64 = 1.5;
 /// Most free parameters beside a correction for which intervals were found to cover as they should.
 const MOST_BESIDE_A_CORRECTION: usize = 3;
 
+/// How far a walk along one parameter has come within an interval, and how the others go with it.
+#[derive(Clone)]
+struct Walk {
+    /// Distance from the best value, and the standard deviations there.
+    near: f64,
+    at_near: f64,
+    /// Value of the parameter, and those of the others.
+    held: f64,
+    rest: Vec<f64>,
+    /// Their changes with it, and the inverse of their second derivatives.
+    slopes: Vec<f64>,
+    inverse: Vec<Vec<f64>>,
+}
+
 /// A place found, with what its intervals are made of.
 pub(super) struct Found<'a> {
     pub(super) likelihood: Likelihood<'a>,
@@ -67,8 +81,15 @@ impl<'a> Found<'a> {
 
     /// End of an interval of a parameter, so many standard deviations to a side, by the profile of the likelihood;
     /// infinite where the points leave it open. The walk begins at the farthest place to that side that another search
-    /// found as good. A better place that is met on the way goes to `better`.
-    fn end(&self, axis: usize, deviations: f64, better: &RefCell<Option<Smallest>>) -> f64 {
+    /// found as good, or where `walked`, the walk to a nearer end, has come. A better place that is met on the way goes to
+    /// `better`.
+    fn end(
+        &self,
+        axis: usize,
+        deviations: f64,
+        walked: Option<Walk>,
+        better: &RefCell<Option<Smallest>>,
+    ) -> (f64, Walk) {
         let wanted = deviations.abs();
         let centre = self.best.place[axis];
         let beyond = |other: &Smallest| (other.place[axis] - centre) * deviations.signum();
@@ -77,37 +98,52 @@ impl<'a> Found<'a> {
         let others = others.filter(|other| beyond(other) > 0.0);
         let first = others.max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
         let first = first.unwrap_or(&self.best);
-        let (mut inverse, mut slopes) = first.beside(axis);
+        let (inverse, slopes) = first.beside(axis);
         let mut rest = first.place.clone();
-        let mut held = rest.remove(axis);
+        let mut walk = Walk {
+            near: beyond(first),
+            at_near: excess(first),
+            held: rest.remove(axis),
+            rest,
+            slopes,
+            inverse,
+        };
+        if let Some(walked) = walked.filter(|walked| walked.near > walk.near) {
+            walk = walked;
+        }
+        let (mut near, mut at_near) = (walk.near, walk.at_near);
         // Standard deviations from the best value: about linear in the distance.
         let mut deviations_at = |distance: f64| {
             let value = centre + distance * deviations.signum();
             let likelihood = &self.likelihood;
-            let moved = rest.iter().zip(&slopes);
+            let moved = walk.rest.iter().zip(&walk.slopes);
             let moved: Vec<f64> = moved
-                .map(|(one, slope)| one + slope * (value - held))
+                .map(|(one, slope)| one + slope * (value - walk.held))
                 .collect();
             let level = self.best.value + deviations * deviations;
             let doubtful = level + 0.5 * deviations * deviations;
-            let settle =
-                |rest: &[f64]| likelihood.settle_beside((axis, value), rest, &inverse, doubtful);
+            let settle = |rest: &[f64]| {
+                likelihood.settle_beside((axis, value), rest, &walk.inverse, doubtful)
+            };
             let is_astray = |one: &Smallest| one.value >= doubtful;
             let ahead = settle(&moved);
             // What has gone astray on its way ahead may not from where it was.
-            let back = ahead.as_ref().is_none_or(is_astray).then(|| settle(&rest));
+            let back = ahead
+                .as_ref()
+                .is_none_or(is_astray)
+                .then(|| settle(&walk.rest));
             let both = ahead.into_iter().chain(back.flatten());
             let Some(found) = both.min_by(|a, b| a.value.total_cmp(&b.value)) else {
                 return f64::INFINITY;
             };
             if found.value < level {
-                let ways = found.place.iter().zip(&rest);
-                slopes = ways
-                    .map(|(to, from)| (to - from) / (value - held))
+                let ways = found.place.iter().zip(&walk.rest);
+                walk.slopes = ways
+                    .map(|(to, from)| (to - from) / (value - walk.held))
                     .collect();
-                held = value;
-                rest.clone_from(&found.place);
-                inverse.clone_from(&found.inverse);
+                walk.held = value;
+                walk.rest.clone_from(&found.place);
+                walk.inverse.clone_from(&found.inverse);
             }
             if found.value < self.best.value - 0.02 && better.borrow().is_none() {
                 let mut place = found.place.clone();
@@ -118,18 +154,19 @@ impl<'a> Found<'a> {
         };
         let step = self.likelihood.steps[axis];
         let error = (2.0 * first.inverse[axis][axis]).max(0.0).sqrt();
-        let (mut near, mut at_near) = (beyond(first), excess(first));
         let mut far = near + (wanted - at_near) * error.clamp(1e-3 * step, 5.0 * step);
         let mut at_far = deviations_at(far);
+        let open = deviations.signum() * f64::INFINITY;
         while at_far < wanted {
             if far > REACH * step {
-                return deviations.signum() * f64::INFINITY;
+                return (open, walk);
             }
             let growth = (wanted / at_far).clamp(1.2, 4.0);
             (near, at_near) = (far, at_far);
             far *= growth;
             at_far = deviations_at(far);
         }
+        let mut end = None;
         for _ in 0..MOST_CUTS {
             let share = match at_far < 3.0 * wanted {
                 true => ((wanted - at_near) / (at_far - at_near)).clamp(0.05, 0.95),
@@ -143,14 +180,15 @@ impl<'a> Found<'a> {
                 (far, at_far) = (between, found);
             }
             if (found - wanted).abs() < 0.01 * wanted {
-                return centre + between * deviations.signum();
+                end = Some(between);
+                break;
             }
         }
+        (walk.near, walk.at_near) = (near, at_near);
         // Where the curves stop overlapping the likelihood ends, but the points have not said so.
-        match at_far.is_finite() {
-            true => centre + far * deviations.signum(),
-            false => deviations.signum() * f64::INFINITY,
-        }
+        let end = end.or_else(|| at_far.is_finite().then_some(far));
+        let end = end.map_or(open, |end| centre + end * deviations.signum());
+        (end, walk)
     }
 
     /// Value and intervals of every parameter, or a better place.
@@ -158,12 +196,12 @@ impl<'a> Found<'a> {
         let better = RefCell::new(None);
         let mut found = Vec::new();
         for axis in 0..self.best.place.len() - 1 {
-            let interval = |deviations: f64| {
-                let [lower, upper] =
-                    [-deviations, deviations].map(|end| self.end(axis, end, &better));
-                Interval::new(lower, upper)
-            };
-            let intervals = [interval(NARROW), interval(WIDE)];
+            let ends = [-1.0, 1.0].map(|side| {
+                let (narrow, walked) = self.end(axis, side * NARROW, None, &better);
+                [narrow, self.end(axis, side * WIDE, Some(walked), &better).0]
+            });
+            let interval = |width: usize| Interval::new(ends[0][width], ends[1][width]);
+            let intervals = [interval(0), interval(1)];
             if let Some(better) = better.take() {
                 return Err(better);
             }

@@ -92,8 +92,11 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
         lines.insert(2, line);
     }
     if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
+        let in_bore = estimate.newtonian_flow_rate_ratio_clear_bore;
+        let in_bore = in_bore.map(|ratio| format!(", {ratio:.4} in its clear bore"));
         lines.push(format!(
-            "Newtonian fluid   J/Jmax = {ratio:.4} in this tube, without load"
+            "Newtonian fluid   J/Jmax = {ratio:.4} in this tube{}, without load",
+            in_bore.unwrap_or_default()
         ));
     }
     if let Some(si) = &estimate.si {

@@ -150,7 +150,11 @@ fn row(wall: &str, shown: &Shown<Line<'_>>) -> Vec<String> {
 /// Critical width and exponent at other thresholds.
 fn shifted(wall: &str, line: &Line<'_>) -> Vec<String> {
     let at = |shift: f64| {
-        let fit = line.at_threshold(line.threshold + shift).fit;
+        let shifted = line.at_threshold(line.threshold + shift);
+        // At the first of the thresholds there is none below.
+        let fit = shifted
+            .fit
+            .filter(|_| shift == 0.0 || shifted.threshold != line.threshold);
         cell_of(fit, |fit| {
             format!("{}; {}", fit.critical_width, fit.exponent)
         })

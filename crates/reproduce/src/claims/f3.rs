@@ -86,6 +86,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.table("amplitudes", &[], rows);
     draft.table("windows", &[], windows);
+    distrust(&mut draft, &found);
     for (name, collapsed) in &found {
         let of = format!("wall {name}");
         let exponents = collapsed.quantities(&of, ["*a*", "*b*"]);

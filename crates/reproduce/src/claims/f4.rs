@@ -43,6 +43,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .share_y()
         .colour_scale(rate_colours(lines.map(|(line, _)| line.strain_rate)));
     draft.chart("transition-time-variance", &[], variances)?;
+    distrust(&mut draft, &collapses);
     if !collapses.is_empty() {
         let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}"];
         let scaled = chart(&collapses, labels, "*χ_{τ}ε̇*^{*a*}", -3.0);

@@ -13,7 +13,7 @@ struct Jump<'a> {
     branch: Branch<'a>,
     fall: Step,
     height: Option<Uncertain>,
-    /// J/Jmax of the runs from rest near the fall.
+    /// J/Jmax of the runs from rest near the fall, for the histogram.
     near: Vec<f64>,
     runs: usize,
 }
@@ -48,7 +48,6 @@ impl Jump<'_> {
     fn row(wall: &str, one: &Shown<Self>) -> Vec<String> {
         let jump = &one.found;
         let [before, after] = jump.fall.controls;
-        let [peaks, dip] = cells_of_peaks(&jump.near);
         vec![
             wall.to_owned(),
             number(one.strain_rate, 3),
@@ -60,8 +59,6 @@ impl Jump<'_> {
                 "none seen"
             }
             .to_owned(),
-            peaks,
-            dip,
             number(one.escaped, 2),
         ]
     }

@@ -155,11 +155,17 @@ impl Candidate {
             let claimed =
                 |row: &&Row<'_>| WHERE_CLAIMED.contains(&(distance(row) * rate.powf(-1.5)));
             let claimed: Vec<Row<'_>> = rows.iter().filter(claimed).copied().collect();
-            let amplitude = mean_of(&claimed, |row| match row.transition().observed() {
-                Some(time) => (time * distance(row), time * critical.error),
-                None => (f64::NAN, f64::NAN),
+            // The error of w_c moves all runs together.
+            let seen = claimed.iter().filter_map(|row| {
+                let time = row.transition().observed()?;
+                Some((time * distance(row), time * critical.error))
             });
-            amplitudes.extend(amplitude.map(|amplitude| (rate, amplitude)));
+            let (products, shifts): (Vec<f64>, Vec<f64>) = seen.unzip();
+            let (amplitude, scatter) = mean_and_error(&products);
+            let error = scatter.hypot(shifts.iter().sum::<f64>() / shifts.len() as f64);
+            if products.len() > 1 {
+                amplitudes.push((rate, Uncertain::normal(amplitude, error)));
+            }
         }
         let [rate, width, error] = columns(widths, LEAST_ERROR_OF_A_WIDTH);
         let line = fit_line(&rate, &width, &error).ok();

@@ -107,7 +107,8 @@ struct DriveKeys {
     /// Segments a wavelength, with waveform = "segments".
     #[schemars(extend("x-unit" = "1", "minimum" = 2, "maximum" = 32))]
     segments: Option<u32>,
-    /// Pressure rise over a wavelength that the grains are pumped against, beside their weight.
+    /// Pressure rise over a wavelength that the grains are pumped against, beside their weight. It acts on the section
+    /// pi a^2 of the straight tube, a to the centres of the wall's spheres, as pressure_rise in results.
     #[serde(default)]
     #[schemars(extend("x-unit" = "Pa", "minimum" = -1e9, "maximum" = 1e9))]
     back_pressure: f64,

@@ -111,7 +111,11 @@ pub const ALL: [Group; GROUPS] = [
         value: |tube| {
             let lattice = &tube.configuration.tube;
             let around = core::f64::consts::TAU * lattice.radius * lattice.length();
-            (around / lattice.wall_spheres() as f64).sqrt() / tube.diameter
+            match lattice.wall_spheres() {
+                // A smooth wall is one without spheres.
+                0 => 0.0,
+                spheres => (around / spheres as f64).sqrt() / tube.diameter,
+            }
         },
     },
     Group {
@@ -155,7 +159,7 @@ pub fn groups(configuration: &Configuration) -> Option<[f64; GROUPS]> {
         configuration,
         bore: 2.0 * configuration.tube.radius - sphere,
         throat: width - sphere,
-        diameter: 0.5 * (grains.diameter_min + grains.diameter_max),
+        diameter: grains.distribution().mean(1),
     };
     let moves = configuration.drive.strain_rate > 0.0 && tube.bore > 0.0;
     moves.then(|| ALL.map(|group| (group.value)(&tube)))

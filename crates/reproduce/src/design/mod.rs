@@ -140,6 +140,11 @@ fn regime(configuration: &Configuration, expected: &[ExpectedFlow]) -> String {
     let Control::Strain { width } = configuration.drive.control else {
         return String::new();
     };
+    if configuration.drive.waveform == WaveformName::Segments {
+        return "segments that close in turn: what they carry depends on their order, and on how long each stays closed; \
+                compute it"
+            .to_owned();
+    }
     let throat = width - configuration.wall.sphere_diameter;
     if throat <= 0.0 {
         return "closed: a positive displacement pump, which carries what is between two throats; the flow is that of all \

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use peristalsis_observe::{Sample, clear_volume_of_wave};
 
-use super::late::error_of;
+use super::late::{error_of, frequency};
 use super::mean_of;
 use crate::run::Run;
 
@@ -32,16 +32,17 @@ pub struct Discharge {
 impl Discharge {
     /// Of the late samples of a run; `None` of a periodic tube.
     pub(super) fn of(run: &Run, late: &[Sample]) -> Option<Self> {
-        let (configuration, simulation) = (run.configuration(), run.simulation());
+        let simulation = run.simulation();
         let ends = simulation.ends()?;
         let measured =
             |value: fn(&Sample) -> f64| (mean_of(late, value), error_of(late.iter().map(value)));
         let times = ends.transit_times();
         let (passed, variance) = (times.number(), times.variance());
         let rate = measured(|sample| sample.discharge_rate);
-        let refill_efficiency = configuration.drive.period().map(|period| {
+        let frequency = frequency(run.recorder().samples(), late);
+        let refill_efficiency = (frequency > 0.0).then(|| {
             // A grain of mass m has the volume pi m/6.
-            let part = period * PI / 6.0 / clear_volume_of_wave(simulation);
+            let part = PI / 6.0 / (frequency * clear_volume_of_wave(simulation));
             (part * rate.0, part * rate.1)
         });
         Some(Self {

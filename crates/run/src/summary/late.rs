@@ -16,12 +16,18 @@ pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
 
 /// Late mean of J/Jmax and its error; NaN where the wave stands all the time.
 ///
-/// While the wave pauses Jmax is 0. The result is then the mean of J divided by the mean of Jmax = N c/L, with c the mean
-/// speed of the wave. Flow while the wave stands counts. `length` is L, between the ends of an open tube \[lambda\].
-pub(super) fn flow_rate_ratio(samples: &[Sample], late: &[Sample], length: f64) -> (f64, f64) {
+/// Of a wave that changes its speed it is the mean of J divided by the mean of Jmax = N c/L, with c the mean speed: while it
+/// hardly moves, J/Jmax can be anything. Flow while the wave stands counts. `length` is L, between the ends of an open tube
+/// \[lambda\].
+pub(super) fn flow_rate_ratio(
+    samples: &[Sample],
+    late: &[Sample],
+    length: f64,
+    changes_speed: bool,
+) -> (f64, f64) {
     let ratios = super::ratios_of(late);
     let frequency = frequency(samples, late);
-    if frequency > 0.0 && ratios.iter().any(|ratio| ratio.is_nan()) {
+    if changes_speed && frequency > 0.0 {
         let most = frequency * mean_of(late, |sample| sample.inside) / length;
         let flow = |sample: &Sample| sample.flow_rate / most;
         return (mean_of(late, flow), error_of(late.iter().map(flow)));
@@ -33,7 +39,7 @@ pub(super) fn flow_rate_ratio(samples: &[Sample], late: &[Sample], length: f64) 
 }
 
 /// Mean frequency at which waves passed in the time of the late samples \[1/t\].
-fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
+pub(super) fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
     let early = &samples[..samples.len() - late.len()];
     let of = |sample: Option<&Sample>| sample.map_or((0.0, 0.0), |it| (it.period, it.time));
     let (before, after) = (of(early.last()), of(late.last()));

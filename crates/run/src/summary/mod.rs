@@ -8,7 +8,7 @@ mod table;
 mod written;
 
 use peristalsis_analysis::number::known_error;
-use peristalsis_configuration::{Configuration, Units};
+use peristalsis_configuration::{Configuration, ScheduledParameter, Units};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 
@@ -132,6 +132,10 @@ impl Summary {
         let of_period = (samples_per_period / recorder.intervals()).max(1) as usize;
         let length = simulation.length();
         let in_waves = length / configuration.tube.wavelength;
+        let changes_speed = configuration
+            .drive
+            .schedule(ScheduledParameter::StrainRate)
+            .is_some();
         let profile = late_profile(run);
         let part = |part| recorder.profile().late_part(fraction, part);
         let whole = part(WavePart::Whole);
@@ -143,7 +147,7 @@ impl Summary {
         Self {
             status,
             message,
-            flow_rate_ratio: late::flow_rate_ratio(samples, late, in_waves),
+            flow_rate_ratio: late::flow_rate_ratio(samples, late, in_waves, changes_speed),
             transition_time: recorder.transition_time(),
             transition_times: recorder.transition_times(),
             newtonian: newtonian_reference(configuration),
@@ -229,11 +233,16 @@ impl Summary {
         Some((self.in_si(value, unit)?, self.in_si(error, unit)?))
     }
 
-    /// Late mean of the mass that flows and its error \[kg/s\]; `None` where the configuration does not say its units.
+    /// Late mean of the mass that flows and its error \[m/t\].
+    pub fn mass_flow_rate(&self) -> (f64, f64) {
+        let rate = |sample: &Sample| sample.mass_flow_rate;
+        // No flow has no sign.
+        (self.mean(rate) + 0.0, error_of(self.late.iter().map(rate)))
+    }
+
+    /// The same \[kg/s\]; `None` where the configuration does not say its units.
     pub fn mass_flow_rate_in_si(&self) -> Option<(f64, f64)> {
-        let mass = self.configuration.mean_grain_mass();
-        let error = error_of(self.late.iter().map(|sample| sample.flow_rate));
-        self.measured_in_si((mass * self.flow_rate(), mass * error), Units::mass_flow)
+        self.measured_in_si(self.mass_flow_rate(), Units::mass_flow)
     }
 
     /// Late mean of the normal force that 99 % of the contacts of grains do not exceed, and the largest
