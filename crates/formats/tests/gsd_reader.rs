@@ -31,6 +31,7 @@ fn frame(number: u32, turning: bool) -> Frame {
         turns: vec![0, -1, number as i32, 0, 0],
         velocity: vec![[shift, 0.125, -0.5]; 5],
         diameter: vec![1.0, 0.75, 0.875, 1.0, 1.0],
+        mass: vec![1.0, 0.5, 0.75, 0.0, 0.0],
         rotation: turning.then(|| Rotation {
             angular_velocity: vec![[0.5, 0.25, shift]; 3],
             orientation: vec![[0.5, 0.5, 0.5, 0.5]; 3],

@@ -124,7 +124,7 @@ const CASES: &[(&str, &str, &str)] = &[
 ];
 
 /// Columns that came after the record, by how their names begin: left out, so that it shows the others to be as they were.
-const LATER: [&str; 7] = [
+const LATER: [&str; 8] = [
     "axial_mixing",
     "radial_mixing",
     "radial_segregation",
@@ -132,6 +132,7 @@ const LATER: [&str; 7] = [
     "height_segregation",
     "wall_wear",
     "mean_diameter",
+    "mass_flow_rate",
 ];
 
 fn of_the_record(table: &Table) -> Table {

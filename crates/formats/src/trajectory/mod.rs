@@ -44,6 +44,8 @@ pub struct Frame {
     pub velocity: Vec<[f64; 3]>,
     /// Diameters \[d\]; the same in every frame.
     pub diameter: Vec<f64>,
+    /// Masses \[m\]; the same in every frame. Spheres that move as prescribed have none: 0.
+    pub mass: Vec<f64>,
     /// How the grains turn; `None` where they do not.
     pub rotation: Option<Rotation>,
     /// Contacts; left empty where no format asks for them.

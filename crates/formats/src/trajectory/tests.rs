@@ -27,6 +27,7 @@ fn frame(number: u64, turning: bool) -> Frame {
         turns: vec![0, -1, number as i32, 0, 0],
         velocity: vec![[shift, 2.0 / 7.0, -0.5]; 5],
         diameter: vec![1.0, 0.8, 0.9, 1.0, 1.0],
+        mass: vec![1.0, 0.512, 0.729, 0.0, 0.0],
         rotation: turning.then(|| Rotation {
             angular_velocity: vec![[0.1, 0.2, shift]; 3],
             orientation: vec![[0.6, 0.0, 0.8, 0.0]; 3],
@@ -241,6 +242,10 @@ fn gsd_holds_what_was_written() {
     assert_eq!(
         singles(&first("particles/diameter").2),
         [1.0, 0.8, 0.9, 1.0, 1.0]
+    );
+    assert_eq!(
+        singles(&first("particles/mass").2),
+        [1.0, 0.512, 0.729, 0.0, 0.0]
     );
     let kinds = [0, 0, 0, 1, 1_u32].map(u32::to_le_bytes).concat();
     assert_eq!(first("particles/typeid").2, kinds);

@@ -93,7 +93,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
     let summary = PROSE.text("summary", &[]);
-    draft.table("jumps", values!(near = NEAR_THE_JUMP), rows);
+    draft.table("jumps", &[], rows);
     let periods = walls.iter().map(|one| one.periods).fold(0.0, f64::max);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));
     let rates = walls.iter().flat_map(|one| &one.all);

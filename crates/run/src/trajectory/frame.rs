@@ -25,6 +25,7 @@ pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
         turns: bodies.turns.clone(),
         velocity: bodies.velocity.iter().map(|v| v.to_array()).collect(),
         diameter: bodies.diameter.clone(),
+        mass: bodies.mass.clone(),
         rotation: rotation(run),
         contacts: Vec::new(),
         values: values(run),
@@ -34,6 +35,7 @@ pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
         frame.velocity.push(sphere.velocity.to_array());
         frame.turns.push(0);
         frame.diameter.push(sphere.diameter);
+        frame.mass.push(0.0);
     }
     frame.width = width(&frame, wall);
     if with_contacts {

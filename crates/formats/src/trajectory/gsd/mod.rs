@@ -1,7 +1,7 @@
 //! Frames as General Simulation Data, in the HOOMD schema.
 //!
 //! - GSD's box is centred: z of the file is z - L/2, and `particles/image` counts the turns round the tube.
-//! - `particles/types` are `grain` and `wall`; types and diameters are in the first frame and hold for all.
+//! - `particles/types` are `grain` and `wall`; types, diameters and masses are in the first frame and hold for all.
 //! - Grains that turn have `particles/orientation` and, for the schema has no angular velocity in the laboratory's frame,
 //!   `log/particles/angular_velocity`.
 //! - `log/time` and the frame's other values are in 64 bits; all else in 32.
@@ -36,6 +36,7 @@ const ANGULAR_VELOCITY: &str = "log/particles/angular_velocity";
 const TYPES: &str = "particles/types";
 const TYPE_NUMBERS: &str = "particles/typeid";
 const DIAMETER: &str = "particles/diameter";
+const MASS: &str = "particles/mass";
 /// Beginning of the names of logged values.
 const LOG: &str = "log/";
 /// The logged time.
@@ -116,14 +117,16 @@ fn every_frame(frame: &Frame) -> Vec<Chunk> {
 }
 
 /// What holds for every frame.
-fn first_frame(frame: &Frame) -> [Chunk; 3] {
+fn first_frame(frame: &Frame) -> [Chunk; 4] {
     let types = [*b"grain\0", *b"wall\0\0"].map(|name| name.map(|letter| letter as i8));
     let kinds = (0..frame.spheres()).map(|sphere| [u32::from(sphere >= frame.grains)]);
-    let diameter = frame.diameter.iter().map(|&diameter| [diameter]);
+    let [diameter, mass] =
+        [&frame.diameter, &frame.mass].map(|all| singles(all.iter().map(|&one| [one])));
     [
         Chunk::new(TYPES, types),
         Chunk::new(TYPE_NUMBERS, kinds),
-        Chunk::new(DIAMETER, singles(diameter)),
+        Chunk::new(DIAMETER, diameter),
+        Chunk::new(MASS, mass),
     ]
 }
 

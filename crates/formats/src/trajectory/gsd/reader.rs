@@ -10,8 +10,8 @@ use super::container::{
     read_names,
 };
 use super::{
-    ANGULAR_VELOCITY, BOX, DIAMETER, GRAIN, IMAGE, LOG, NUMBER, ORIENTATION, POSITION, STEP, TIME,
-    TYPE_NUMBERS, TYPES, VELOCITY, WALL,
+    ANGULAR_VELOCITY, BOX, DIAMETER, GRAIN, IMAGE, LOG, MASS, NUMBER, ORIENTATION, POSITION, STEP,
+    TIME, TYPE_NUMBERS, TYPES, VELOCITY, WALL,
 };
 use crate::error::FormatError;
 use crate::trajectory::{Frame, Rotation};
@@ -145,6 +145,11 @@ impl GsdReader {
             }
         }
         let diameter: Vec<[f64; 1]> = self.reals(frame, DIAMETER, number)?;
+        // Files of earlier versions have none, which means 1.
+        let mass: Vec<[f64; 1]> = match self.entry(frame, MASS) {
+            Some(_) => self.reals(frame, MASS, number)?,
+            None => vec![[1.0]; number],
+        };
         let rotation = match self.entry(frame, ORIENTATION) {
             None => None,
             Some(_) => Some(Rotation {
@@ -162,6 +167,7 @@ impl GsdReader {
             turns,
             velocity: self.reals(frame, VELOCITY, number)?,
             diameter: diameter.into_iter().flatten().collect(),
+            mass: mass.into_iter().flatten().collect(),
             rotation,
             contacts: Vec::new(),
             values: self.values(frame)?,
