@@ -474,7 +474,7 @@ class PumpingSummary(TypedDict):
     pressure_rise: float
     """pressure rise over a wavelength that the body force stands for [m/(d t^2)]"""
     useful_power: float | None
-    """late mean power of the flow against the body force [m d^2/t^3]"""
+    """late mean power of the flow against the body force, grains inside [m d^2/t^3]"""
     useful_power_error: float | None
     """its standard error [m d^2/t^3]"""
     efficiency: float | None
@@ -487,7 +487,7 @@ class ThroatSummary(TypedDict):
     """What a summary says under ``throat``."""
 
     density: float
-    """late mean of the grains per length of tube in the fifth of the wavelength where it is narrowest [1/d]"""
+    """late mean of the grains per length of tube in about a fifth of the wavelength where it is narrowest [1/d]"""
     axial_velocity: float
     """mean axial velocity along the wave there [d/t]"""
     granular_temperature: float
@@ -543,7 +543,7 @@ class SiSummary(TypedDict):
     discharge_rate_kg_per_s_error: float | None
     """its standard error [kg/s]"""
     mass_flow_rate_kg_per_s: float | None
-    """late mean flow J m; missing without the table units [kg/s]"""
+    """mass_flow_rate in SI; missing without the table units [kg/s]"""
     mass_flow_rate_kg_per_s_error: float | None
     """its standard error [kg/s]"""
     wall_power_w: float | None
@@ -604,7 +604,7 @@ class Summary(TypedDict):
     transition_threshold: float
     """J/Jmax whose crossing counts as the transition"""
     flow_rate_ratio: float
-    """late mean of J/Jmax, grains inside; of J over that of Jmax where the wave pauses"""
+    """late mean of J/Jmax, grains inside; of J over that of Jmax where the wave changes its speed"""
     flow_rate_ratio_error: float
     """its standard error"""
     flow_rate_ratio_drift: float
@@ -626,11 +626,11 @@ class Summary(TypedDict):
     largest_overlap: float
     """largest overlap of a grain's contact at any step [d]"""
     energy_residual: float
-    """|what the energy ledger misses|/integral of |power that entered|"""
+    """|what the energy ledger misses|/(integral of |power of wall and drive| + |work of the body force|)"""
     granular_temperature: float
-    """late mean of the granular temperature [m d^2/t^2]"""
+    """late mean of the granular temperature, escaped grains too [m d^2/t^2]"""
     contacts: float
-    """late mean number of contacts of a grain"""
+    """late mean number of contacts of a grain, escaped ones too"""
     wall_power: float
     """late mean power that wall or drive put into the whole tube [m d^2/t^3]"""
     dissipated_power: float
@@ -677,7 +677,7 @@ class Summary(TypedDict):
     front_tangential_force_error: float
     """its standard error [m d/t^2]"""
     wall_pressure: float
-    """late mean pressure on the wall, each bin of the profile alike [m/(d t^2)]"""
+    """late mean pressure on the wall between its ends, each bin of the profile alike [m/(d t^2)]"""
     wall_pressure_largest: float
     """largest late mean pressure on the wall over the positions in the wave frame [m/(d t^2)]"""
     contact_force_99: float | None
@@ -736,7 +736,8 @@ class Summary(TypedDict):
     axial_dispersion_error: float
     """its standard error [d^2/t]"""
     late_periods: float
-    """periods that late means are over"""
+    """periods of samples that late means are over: of drive.strain_rate, or of observe.samples_per_period where the
+    wave stands"""
     back_flow: float
     """late mean of -J where J < 0, each J the mean over the interval of a sample: what flows back in a stroke
     [1/t]"""
@@ -744,6 +745,10 @@ class Summary(TypedDict):
     """its standard error [1/t]"""
     pressed: float
     """part of the late samples at which a grain overlaps another or the wall by more than 0.1 d"""
+    mass_flow_rate: float
+    """late mean mass that flows along the wave, sum m v_z over L, grains inside [m/t]"""
+    mass_flow_rate_error: float
+    """its standard error [m/t]"""
     wall_spheres: int
     """spheres of the wall"""
     grain_steps_per_second: float

@@ -166,7 +166,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("belly_segregation", "1", "late mean correlation of diameter and the tube's radius: positive where large grains are in the bellies", OptionalMeasured(|s| s.segregated.belly)).labelled("segregation by position in the wave"),
     result("residence_time", "t", "late mean time of a grain through the tube, N/J; missing where the flow is not along the wave", OptionalMeasured(|s| s.residence_time)).labelled("residence time"),
     result("axial_dispersion", "d^2/t", "half the late rate at which the variance of axial displacements grows from period to period", Measured(|s| s.axial_dispersion)).labelled("axial dispersion"),
-    result("late_periods", "1", "periods that late means are over", Real(Summary::late_periods)),
+    result("late_periods", "1", "periods of samples that late means are over: of drive.strain_rate, or of observe.samples_per_period where the wave stands", Real(Summary::late_periods)),
     result("throat_density", "1/d", "late mean of the grains per length of tube in about a fifth of the wavelength where it is narrowest", Real(|s| s.throat.density)).at("throat.density"),
     result("throat_axial_velocity", "d/t", "mean axial velocity along the wave there", Real(|s| s.throat.axial_velocity)).at("throat.axial_velocity"),
     result("throat_granular_temperature", "m d^2/t^2", "granular temperature there", Real(|s| s.throat.granular_temperature)).at("throat.granular_temperature"),
