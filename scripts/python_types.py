@@ -88,9 +88,9 @@ END = '''    pumping: PumpingSummary | None
     open: OpenSummary | None
     """What passes through an open tube; `None` of a periodic one."""
     throat: ThroatSummary
-    """The fifth of the wavelength where the tube is narrowest."""
+    """About a fifth of the wavelength, where the tube is narrowest."""
     belly: BellySummary
-    """The fifth of the wavelength where it is widest."""
+    """About a fifth of the wavelength, where it is widest."""
     si: SiSummary | None
     """Quantities in SI; `None` without the table ``units``."""
     transition_times: list[ThresholdTime]

@@ -185,12 +185,17 @@ impl<'a> Collapse<'a> {
         let all_steps = [steps, &[STIFFNESS.1]].concat();
         let likelihood = Likelihood::new(self, &all_steps, found.correction, known)?;
         let best: Vec<f64> = found.parameters.iter().map(|one| one.value).collect();
-        // From curves of any stiffness.
+        let mut from_claimed = best.clone();
+        claimed
+            .iter()
+            .for_each(|&(place, value)| from_claimed[place] = value);
+        // From curves of any stiffness; a correction may move the best far away.
         let least = |held: &[(usize, f64)]| {
-            let starts = [0.0, 3.0, 6.0].map(|more| [&best[..], &[STIFFNESS.0 + more]].concat());
-            let found = starts
-                .iter()
-                .filter_map(|start| likelihood.settle_holding(held, start));
+            let places = [&best, &from_claimed];
+            let starts = places.into_iter().flat_map(|place| {
+                [0.0, 3.0, 6.0].map(|more| [&place[..], &[STIFFNESS.0 + more]].concat())
+            });
+            let found = starts.filter_map(|start| likelihood.settle_holding(held, &start));
             found.map(|found| found.value).min_by(f64::total_cmp)
         };
         let (Some(least), Some(held)) = (least(&[]), least(claimed)) else {

@@ -89,6 +89,10 @@ impl Uncertain {
     /// Student's distribution, open without degrees of freedom.
     pub fn student(value: f64, error: f64, degrees_of_freedom: usize) -> Self {
         let between = |tail: f64| {
+            if degrees_of_freedom == 0 {
+                let [lower, upper] = Interval::OPEN;
+                return Interval::new(lower, upper);
+            }
             let reach = student::quantile(tail, degrees_of_freedom) * error;
             Interval::new(value - reach, value + reach)
         };
@@ -207,6 +211,8 @@ mod tests {
         let few = Uncertain::student(2.0, 0.5, 2);
         assert!((few.interval_95.upper - 2.0 - 0.5 * 4.3027).abs() < 1e-4);
         assert!((few.interval_68.length() - 1.3213).abs() < 1e-3);
+        let alone = Uncertain::student(2.0, f64::NAN, 0);
+        assert!(alone.interval_95.contains(-1e9) && alone.interval_95.contains(1e9));
         let ratio = Uncertain::normal(libm::log(10.0), 0.1).exponential();
         assert!((ratio.error - 1.0).abs() < 1e-12);
         let product = ratio.interval_95.lower * ratio.interval_95.upper;

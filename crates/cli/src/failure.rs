@@ -210,7 +210,7 @@ const MEND: &str = "nothing that was finished is lost: mend the disk and call ag
 fn unwritten(folder: &RunFolder) -> String {
     let path = folder.path().display();
     let state = folder.state();
-    match state.is_ok_and(|run| folder.has_results_of(&run)) {
+    match state.is_ok_and(|run| folder.has_final_results_of(&run)) {
         true => format!(
             "the tables are there: make room, then draw the figures with: peristalsis figures {path}"
         ),

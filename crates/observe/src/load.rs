@@ -76,7 +76,8 @@ pub fn grain_contacts(simulation: &Simulation) -> Vec<GrainContact> {
 /// Forces and torques on the grains at the present positions and velocities, and the stress in them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Load {
-    /// Force on each grain: the sum over its contacts, and the body force \[m d/t^2\].
+    /// Force on each grain: the sum over its contacts, and the body force; 0 of one that waits outside an open tube
+    /// \[m d/t^2\].
     pub forces: Vec<DVec3>,
     /// Torque on each grain, the sum over its contacts; 0 without friction \[m d^2/t^2\].
     pub torques: Vec<DVec3>,
@@ -153,13 +154,13 @@ pub fn clear_volume(simulation: &Simulation) -> f64 {
     clear_volume_along(simulation, simulation.length())
 }
 
-/// The same of a wavelength, the mean over those of the wall: the ends of an open tube do not count \[d^3\].
+/// Clear volume of a wavelength, the mean over those of the wall: the ends of an open tube do not count \[d^3\].
 pub fn clear_volume_of_wave(simulation: &Simulation) -> f64 {
     let wall = simulation.wall();
     clear_volume_along(simulation, wall.length()) / f64::from(wall.waves())
 }
 
-/// The same from where z is 0, of an open tube from its inlet, along so much of the tube \[d^3\].
+/// Clear volume along so much of the tube from where z is 0, of an open tube from its inlet \[d^3\].
 fn clear_volume_along(simulation: &Simulation, length: f64) -> f64 {
     let wall = simulation.wall();
     let shape = TubeShape::of(simulation);

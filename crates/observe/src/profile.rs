@@ -168,7 +168,8 @@ impl Outline {
     }
 }
 
-/// One bin of a profile; values are NaN where no grain was seen, and all but the radii where the tube has ended.
+/// One bin of a profile; values are NaN where no grain was seen, and all but the radii and the velocity of the wall where the
+/// tube has ended.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProfileBin {
     /// Middle of the bin: (z - c t)/lambda folded to \[0, 1), z along the wave.
@@ -272,7 +273,7 @@ impl WaveFrameProfile {
         let sizes = bodies.mass.iter().zip(&bodies.diameter);
         let grains = grains.zip(sizes).zip(&view.inside);
         for (((place, &velocity), (&mass, &diameter)), &inside) in grains {
-            if inside {
+            if inside && is_in_tube(view.simulation, place.z) {
                 let velocity = DVec3::new(velocity.x, velocity.y, heading * velocity.z);
                 let position = heading * place.z / wavelength - cycles;
                 last[bin_of(position, bins)].add_grain((mass, diameter), velocity);
@@ -304,6 +305,9 @@ impl WaveFrameProfile {
         };
         let of_pieces = simulation.add_up_wall_contacts(begin, |sums, contact| {
             let point = contact.point;
+            if !is_in_tube(simulation, point.z) {
+                return;
+            }
             let bin = bin_of(heading * point.z / wavelength - cycles, bins);
             let from_axis = (point.x * point.x + point.y * point.y).sqrt();
             let force = contact.normal_force + contact.tangential_force;
@@ -434,6 +438,13 @@ fn places_in_tube(simulation: &Simulation, bin: usize, bins: usize) -> f64 {
         (before_outlet + (begin + width - whole).max(0.0)) / width
     };
     (0..wall.waves()).map(of_wave).sum()
+}
+
+/// Whether a place lies between the ends of the tube: a grain that has just passed one is taken out at the next look only.
+fn is_in_tube(simulation: &Simulation, z: f64) -> bool {
+    let wall = simulation.wall();
+    let from_inlet = || (wall.heading() * z).rem_euclid(wall.length());
+    simulation.ends().is_none() || from_inlet() <= simulation.length()
 }
 
 /// Sums of sums.

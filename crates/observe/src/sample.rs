@@ -320,8 +320,9 @@ struct GrainSums {
     /// Mass times displacement in the interval and momentum of the grains that have escaped.
     escaped_moved: f64,
     escaped_momentum: DVec3,
-    /// From here on of all grains.
+    /// Displacements of all grains.
     moved_raw: f64,
+    /// From here on of those inside and those that have escaped.
     kinetic_energy: f64,
     rotational_energy: f64,
     velocity: DVec3,

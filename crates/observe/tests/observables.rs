@@ -134,24 +134,28 @@ fn the_body_force_works_on_the_grains_inside() {
     }
 }
 
+/// Ends through which no grain comes in.
+fn shut(heading: f64) -> OpenEnds {
+    OpenEnds {
+        heading,
+        inlet: Inlet {
+            head: 10.0,
+            length: 3.0,
+            feed_rate: Some(0.0),
+            velocity: 0.0,
+            waiting: 0,
+        },
+        seed: 1,
+    }
+}
+
 #[test]
 fn the_profile_of_an_open_tube_is_that_between_its_ends() {
     for heading in [1.0, -1.0] {
-        let ends = OpenEnds {
-            heading,
-            inlet: Inlet {
-                head: 10.0,
-                length: 3.0,
-                feed_rate: Some(0.0),
-                velocity: 0.0,
-                waiting: 0,
-            },
-            seed: 1,
-        };
         let mut bodies = free_flight(heading).bodies().clone();
         bodies.position.iter_mut().for_each(|place| place.z += 0.1);
         let closed = Simulation::new(bodies, wall(heading, 0.5), parameters());
-        let simulation = closed.open(ends, &[]).unwrap();
+        let simulation = closed.open(shut(heading), &[]).unwrap();
         assert_eq!(simulation.length(), 16.0);
         let mut profile = WaveFrameProfile::new(20, 2);
         profile.add(&View::of(&simulation));
@@ -166,6 +170,27 @@ fn the_profile_of_an_open_tube_is_that_between_its_ends() {
         let grains: f64 = bins.iter().map(|bin| bin.density.0).sum();
         assert_eq!(grains, if heading > 0.0 { 5.0 } else { 3.0 });
     }
+}
+
+#[test]
+fn a_grain_beyond_an_end_is_in_no_profile() {
+    let mut bodies = free_flight(1.0).bodies().clone();
+    bodies.position[2].z = 15.9;
+    let closed = Simulation::new(bodies, wall(1.0, 0.5), parameters());
+    let mut simulation = closed.open(shut(1.0), &[]).unwrap();
+    // Between two looks it leaves.
+    simulation.advance(19).unwrap();
+    assert!(simulation.is_present(2) && simulation.bodies().position[2].z > 16.0);
+    let mut profile = WaveFrameProfile::new(20, 2);
+    profile.add(&View::of(&simulation));
+    let bins = profile.late(1.0, 10.0);
+    // The three others, each in a bin of two places or of one.
+    let densities = bins.iter().map(|bin| bin.density.0).filter(|it| *it > 0.0);
+    let densities: Vec<f64> = densities.collect();
+    assert!(
+        densities.len() == 3 && densities.iter().all(|it| *it <= 2.0),
+        "{densities:?}"
+    );
 }
 
 #[test]

@@ -29,7 +29,7 @@ struct Claimed {
     exponents: [f64; 2],
     /// S and the overlap there, where curves can be compared at all.
     quality: Option<(f64, f64)>,
-    /// Both exponents at once against those found, with their covariance.
+    /// Both exponents at once, by the likelihood there and at the best.
     joint: Option<JointTest>,
     /// Where that excludes them: the power of the strain rate in a correction to scaling that leaves them possible, and
     /// their probability with it.
@@ -297,8 +297,8 @@ pub(crate) fn distrust(draft: &mut Draft, found: &[(String, Collapsed)]) {
     let stretch = number(stretch.fold(1.0, f64::max), 1);
     if !walls.is_empty() {
         draft.finding.weaknesses.push(format!(
-            "The best exponents are not to be trusted on {}: points lie up to {stretch} errors off one curve, or a correction \
-             could move them out of their intervals.",
+            "The best exponents are not to be trusted on {}: the errors had to be stretched by up to {stretch}, or a correction to \
+             scaling is not ruled out.",
             match walls.len() == found.len() {
                 true => "any wall".to_owned(),
                 false => walls.join(", "),

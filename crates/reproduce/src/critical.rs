@@ -316,7 +316,8 @@ pub(crate) fn slope(line: &LineFit) -> Uncertain {
     )
 }
 
-/// A number whose error is stretched by a ratio above 1: it then comes from the scatter of the data.
+/// A number with its error, stretched by a ratio above 1. Below, the errors of the data are taken as they are, with normal
+/// intervals; above, the error comes from their scatter, with Student's, which are wider at once where data are few.
 fn stretched(value: f64, error: f64, ratio: f64, degrees_of_freedom: usize) -> Uncertain {
     match ratio > 1.0 {
         true => Uncertain::student(value, ratio * error, degrees_of_freedom),

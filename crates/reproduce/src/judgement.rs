@@ -8,12 +8,17 @@ use peristalsis_analysis::Uncertain;
 
 use crate::exhibit::listed;
 use crate::finding::{Statistics, Verdict, WallVerdict};
-use crate::thresholds::{LARGE_ERROR, LEAST_RATES, MOST_RATES};
+use crate::thresholds::{AGREES_WITHIN, LARGE_ERROR, LEAST_RATES, MOST_RATES};
 
-/// Whether the source's value lies in the 95 per cent interval of ours; `None` where these are so large that hardly any would not.
+/// Whether the source's value lies in the 95 per cent interval of ours; `None` where that interval is not known, or so
+/// wide that it says little.
 pub(crate) fn agrees(found: &Uncertain, source: f64) -> Option<bool> {
-    let within = found.interval_95.contains(source);
-    (!within || found.error <= LARGE_ERROR * source.abs()).then_some(within)
+    let (within, length) = (
+        found.interval_95.contains(source),
+        found.interval_95.length(),
+    );
+    let is_narrow = length <= 2.0 * AGREES_WITHIN * LARGE_ERROR * source.abs();
+    (is_narrow || !within && !length.is_nan()).then_some(within)
 }
 
 /// Whether all parts of a claim hold: not, where one does not; `None` where one of the others cannot be told.

@@ -2,8 +2,7 @@
 
 use std::cmp::Ordering;
 
-pub(crate) use peristalsis_analysis::mean_and_error;
-use peristalsis_analysis::{Transition, Uncertain};
+use peristalsis_analysis::{Transition, Uncertain, mean_and_error};
 use peristalsis_formats::{FormatError, Table, Values};
 use peristalsis_run::THRESHOLDS;
 

@@ -53,7 +53,8 @@ pub struct Estimate {
     pub number_density: f64,
     /// Length of the tube \[d\].
     pub length: f64,
-    /// Clear opening of a prescribed wall at the throats and in the bellies, where the wave is highest \[d\].
+    /// Clear opening of a prescribed wall at the throats and in the bellies, at the least width that a schedule
+    /// comes to \[d\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub clear_openings: Option<[f64; 2]>,
     /// Wave period \[t\].

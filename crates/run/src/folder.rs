@@ -209,7 +209,7 @@ impl RunFolder {
     }
 
     /// Whether the folder has the results of this run as it stands: those of a state before, or of an interruption, are not.
-    pub fn has_results_of(&self, run: &Run) -> bool {
+    pub fn has_final_results_of(&self, run: &Run) -> bool {
         let interrupted = serde_json::to_value(Status::Interrupted).ok();
         self.summary().is_some_and(|summary| {
             summary["steps"] == run.simulation().step()

@@ -1,8 +1,8 @@
 //! The bits of runs, against those on record: every preset, law, waveform and drive, with every kernel, integrator and set
 //! of instructions. A change of structure changes none of them.
 //!
-//! `GOLDEN=write cargo test -p peristalsis-run --test golden` writes the record anew. Where that is right, the physics has
-//! changed: raise `PHYSICS_VERSION`.
+//! `GOLDEN=write cargo test -p peristalsis-run --test golden` writes the record anew. Where that is right because
+//! trajectories have changed, raise `PHYSICS_VERSION`.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 

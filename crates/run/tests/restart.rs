@@ -114,10 +114,10 @@ fn a_folder_goes_on_to_the_same_bits() {
         let run = finish(run);
         // Killed here, its results would still be those of the interruption.
         folder.save_state(&run).unwrap();
-        assert!(!folder.has_results_of(&run));
+        assert!(!folder.has_final_results_of(&run));
         let summary = Summary::of(&run, Status::Complete, None);
         folder.finish(&run, &summary).unwrap();
-        assert!(folder.has_results_of(&run));
+        assert!(folder.has_final_results_of(&run));
 
         for name in ["timeseries.parquet", "profile.parquet", "waves.parquet"] {
             let [one, other] =

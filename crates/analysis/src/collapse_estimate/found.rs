@@ -198,7 +198,16 @@ impl<'a> Found<'a> {
         for axis in 0..self.best.place.len() - 1 {
             let ends = [-1.0, 1.0].map(|side| {
                 let (narrow, walked) = self.end(axis, side * NARROW, None, &better);
-                [narrow, self.end(axis, side * WIDE, Some(walked), &better).0]
+                let (wide, _) = self.end(axis, side * WIDE, Some(walked), &better);
+                // Two walks may settle differently; the wide interval holds the narrow one.
+                [
+                    narrow,
+                    if side * wide < side * narrow {
+                        narrow
+                    } else {
+                        wide
+                    },
+                ]
             });
             let interval = |width: usize| Interval::new(ends[0][width], ends[1][width]);
             let intervals = [interval(0), interval(1)];

@@ -268,7 +268,8 @@ class State:
 
     @property
     def forces(self) -> Array:
-        """Force on each grain [m d/t^2], shape (N, 3): the sum over its `contacts`, and the body force where there is one.
+        """Force on each grain [m d/t^2], shape (N, 3): the sum over its `contacts`, and the body force where there is one;
+        0 of a grain that waits outside an open tube.
 
         In the frame of the tube, at the present positions and velocities; the force of the last step differs from it by
         what the integrator has corrected of the velocities since. A copy, as `positions`.
@@ -304,7 +305,7 @@ class State:
 
         l is the branch vector, from the partner's centre to the grain's or, of a contact with the wall, from where they
         touch to the grain's centre; f is the force on the grain, dv its velocity less the mean of all grains, and V the
-        `volume` that the wall leaves clear. A third of the trace is the pressure. In a straight tube at rest
+        `volume` that the wall leaves clear. Grains that wait outside an open tube do not count. A third of the trace is the pressure. In a straight tube at rest
         (sigma[0, 0] + sigma[1, 1])/2 is the pressure on the wall.
 
         Examples
@@ -320,7 +321,8 @@ class State:
 
     @property
     def volume(self) -> float:
-        """Volume that the wall's spheres leave clear [d^3]: the integral of pi (R - d_w/2)^2 over the tube's length.
+        """Volume that the wall's spheres leave clear [d^3]: the integral of pi (R - d_w/2)^2 over the tube's length,
+        between the ends of an open one.
 
         Examples
         --------

@@ -604,7 +604,8 @@ class Summary(TypedDict):
     transition_threshold: float
     """J/Jmax whose crossing counts as the transition"""
     flow_rate_ratio: float
-    """late mean of J/Jmax, grains inside; of J over that of Jmax where the wave changes its speed"""
+    """late mean of J/Jmax, grains inside; of J over that of Jmax where the wave changes its speed or no grain is
+    inside for a while"""
     flow_rate_ratio_error: float
     """its standard error"""
     flow_rate_ratio_drift: float
@@ -644,7 +645,8 @@ class Summary(TypedDict):
     wall_power_error: float
     """standard error of wall_power [m d^2/t^3]"""
     wall_normal_force: float
-    """late mean axial force of the wall on the grains of a wavelength along the normals of contacts [m d/t^2]"""
+    """late mean axial force of the wall on the grains of a wavelength (of an open tube: all grains over the waves)
+    along the normals of contacts [m d/t^2]"""
     wall_normal_force_error: float
     """its standard error [m d/t^2]"""
     wall_tangential_force: float
@@ -677,7 +679,8 @@ class Summary(TypedDict):
     front_tangential_force_error: float
     """its standard error [m d/t^2]"""
     wall_pressure: float
-    """late mean pressure on the wall between its ends, each bin of the profile alike [m/(d t^2)]"""
+    """late mean pressure on the wall (of an open tube between its ends), each bin of the profile alike [m/(d
+    t^2)]"""
     wall_pressure_largest: float
     """largest late mean pressure on the wall over the positions in the wave frame [m/(d t^2)]"""
     contact_force_99: float | None
@@ -764,9 +767,9 @@ class Summary(TypedDict):
     open: OpenSummary | None
     """What passes through an open tube; `None` of a periodic one."""
     throat: ThroatSummary
-    """The fifth of the wavelength where the tube is narrowest."""
+    """About a fifth of the wavelength, where the tube is narrowest."""
     belly: BellySummary
-    """The fifth of the wavelength where it is widest."""
+    """About a fifth of the wavelength, where it is widest."""
     si: SiSummary | None
     """Quantities in SI; `None` without the table ``units``."""
     transition_times: list[ThresholdTime]

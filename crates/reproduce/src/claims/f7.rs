@@ -60,14 +60,6 @@ fn as_the_source(one: &OnWall<Line<'_>>) -> Option<ScatteredLine> {
     fit_line_to_scatter(&rate, &width, &vec![0.0; rate.len()]).ok()
 }
 
-/// Whether the source's slope lies in the interval of 95 per cent; `None` where that is so wide that it says little.
-fn has_the_slope(line: &ScatteredLine) -> Option<bool> {
-    let interval = line.line.slope.interval_95;
-    let within = interval.contains(SLOPE);
-    let is_wide = interval.length() > 2.0 * AGREES_WITHIN * LARGE_ERROR * SLOPE.abs();
-    (!within || !is_wide).then_some(within)
-}
-
 /// What one wall says, by the slope of the line.
 fn part(
     draft: &mut Draft,
@@ -87,7 +79,10 @@ fn part(
     let explained = cell_of(way, |line| number(line.determination, 3));
     let why = PROSE.text("why", values!(rates, straight, of_source, explained));
     let is_straight = linearity.map(|chance| chance >= BY_CHANCE);
-    let holds = all_hold(&[is_straight, line.and_then(has_the_slope)]);
+    let holds = all_hold(&[
+        is_straight,
+        line.and_then(|line| agrees(&line.line.slope, SLOPE)),
+    ]);
     let slope = line.map(|line| line.line.slope);
     let determination = cell_of(line, |line| number(line.determination, 3));
     let words = PROSE.text("number", values!(slope = cell(slope), determination));

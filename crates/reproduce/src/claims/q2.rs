@@ -1,6 +1,6 @@
 //! Q2: roughness of the wall.
 
-use peristalsis_analysis::fit_line;
+use peristalsis_analysis::{fit_line, mean_and_error};
 
 use super::f3::AMPLITUDE;
 use super::f7::SLOPE;

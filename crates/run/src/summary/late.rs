@@ -14,27 +14,47 @@ pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
     mean_with_error(&series).map_or(f64::NAN, |estimate| estimate.error)
 }
 
-/// Late mean of J/Jmax and its error; NaN where the wave stands all the time.
+/// J/Jmax of each late sample, of the grains inside and of all.
 ///
-/// Of a wave that changes its speed it is the mean of J divided by the mean of Jmax = N c/L, with c the mean speed: while it
-/// hardly moves, J/Jmax can be anything. Flow while the wave stands counts. `length` is L, between the ends of an open tube
-/// \[lambda\].
-pub(super) fn flow_rate_ratio(
+/// Of a wave that changes its speed, and where a sample has none, it is J over the mean of Jmax = N c/L, with c the mean
+/// speed: while the wave hardly moves, J/Jmax can be anything. Flow while it stands counts. NaN where it stands all the time.
+/// `length` is L, between the ends of an open tube \[lambda\].
+pub(super) fn flow_rate_ratios(
     samples: &[Sample],
     late: &[Sample],
     length: f64,
     changes_speed: bool,
-) -> (f64, f64) {
-    let ratios = super::ratios_of(late);
+) -> [Vec<f64>; 2] {
     let frequency = frequency(samples, late);
-    if changes_speed && frequency > 0.0 {
-        let most = frequency * mean_of(late, |sample| sample.inside) / length;
-        let flow = |sample: &Sample| sample.flow_rate / most;
-        return (mean_of(late, flow), error_of(late.iter().map(flow)));
+    let has_gap = late.iter().any(|sample| sample.flow_rate_ratio.is_nan());
+    if !(changes_speed || has_gap) || frequency <= 0.0 {
+        let [inside, raw] = [
+            |sample: &Sample| sample.flow_rate_ratio,
+            |sample: &Sample| sample.flow_rate_ratio_raw,
+        ];
+        return [
+            late.iter().map(inside).collect(),
+            late.iter().map(raw).collect(),
+        ];
     }
-    match mean_with_error(&ratios) {
+    let over_mean = |flow: fn(&Sample) -> f64, number: fn(&Sample) -> f64| {
+        let most = frequency * mean_of(late, number) / length;
+        late.iter().map(|sample| flow(sample) / most).collect()
+    };
+    [
+        over_mean(|sample| sample.flow_rate, |sample| sample.inside),
+        over_mean(
+            |sample| sample.flow_rate_raw,
+            |sample| sample.inside + sample.escaped,
+        ),
+    ]
+}
+
+/// Mean of these ratios and its error; NaN of too few.
+pub(super) fn mean_ratio(ratios: &[f64]) -> (f64, f64) {
+    match mean_with_error(ratios) {
         Ok(estimate) => (estimate.mean, estimate.error),
-        Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
+        Err(_) => (ratios.iter().sum::<f64>() / ratios.len() as f64, f64::NAN),
     }
 }
 
@@ -165,7 +185,10 @@ impl Wear {
         configuration.contact.friction?;
         let waves = f64::from(configuration.tube.waves);
         let (power, error) = (waves * whole.sliding_power.0, waves * whole.sliding_power.1);
-        let radius = profile.iter().map(|bin| bin.radius).sum::<f64>() / profile.len() as f64;
+        // Beyond an end of the tube there is none.
+        let radii = profile.iter().filter(|bin| !bin.density.0.is_nan());
+        let radii: Vec<f64> = radii.map(|bin| bin.radius).collect();
+        let radius = radii.iter().sum::<f64>() / radii.len() as f64;
         let area = TAU * radius * length;
         Some(Self {
             power: (power, error),
@@ -260,6 +283,50 @@ mod tests {
             ..Sample::default()
         });
         assert_eq!(wall_torque(&still, &still[20..]), None);
+    }
+
+    /// A wave of one wavelength a time, then of next to none, with 10 grains in a tube of 2 wavelengths, or with none.
+    #[test]
+    fn the_flow_of_a_wave_that_changes_its_speed_is_over_the_mean() {
+        let of = |slow: f64, changes: bool| {
+            let all = samples(|time| {
+                let (cycles, inside) = (time.min(10.0) + slow * (time - 10.0).max(0.0), 10.0);
+                let frequency = if time > 10.0 { slow } else { 1.0 };
+                let flow_rate = 2.0;
+                Sample {
+                    time,
+                    period: cycles,
+                    inside,
+                    flow_rate,
+                    flow_rate_raw: flow_rate,
+                    flow_rate_ratio: 2.0 * flow_rate / (inside * frequency),
+                    flow_rate_ratio_raw: 2.0 * flow_rate / (inside * frequency),
+                    ..Sample::default()
+                }
+            });
+            flow_rate_ratios(&all, &all, 2.0, changes).map(|ratios| mean_ratio(&ratios).0)
+        };
+        // Half of the time at most is spent at the speed 1.
+        let mean = |slow: f64| 2.0 * 2.0 / 10.0 / ((10.0 + slow * 9.5) / 19.5);
+        for slow in [1e-3, 1e-6] {
+            let found = of(slow, true);
+            assert!(
+                found.iter().all(|one| (one - mean(slow)).abs() < 1e-9),
+                "{found:?}"
+            );
+            assert!(of(slow, false)[0] > 100.0);
+        }
+        // It stands, which leaves samples without a ratio: the same with or without a schedule.
+        let all = samples(|time| Sample {
+            time,
+            period: time,
+            inside: 10.0,
+            flow_rate: 2.0,
+            flow_rate_ratio: if time > 15.0 { f64::NAN } else { 0.4 },
+            ..Sample::default()
+        });
+        let [inside, _] = flow_rate_ratios(&all, &all, 2.0, false);
+        assert!((mean_ratio(&inside).0 - 0.4).abs() < 1e-12);
     }
 
     #[test]

@@ -51,7 +51,8 @@ pub struct Summary {
     pub status: Status,
     /// Why it diverged, where it did.
     pub message: Option<String>,
-    /// Late mean of J/Jmax of the grains inside, its error from block averages; with pauses, of J over that of Jmax.
+    /// Late mean of J/Jmax of the grains inside, its error from block averages; of a wave that changes its
+    /// speed the mean of J over that of Jmax.
     pub flow_rate_ratio: (f64, f64),
     /// tau \[t\]; `None` where the run ended before a transition.
     pub transition_time: Option<f64>,
@@ -100,6 +101,9 @@ pub struct Summary {
     pub trajectory: Option<TrajectoryReport>,
     configuration: Configuration,
     late: Vec<Sample>,
+    /// J/Jmax of each late sample.
+    late_ratios: Vec<f64>,
+    flow_rate_ratio_raw: f64,
     /// Intervals between samples in it.
     late_intervals: u64,
     /// J/Jmax of each whole late period.
@@ -136,6 +140,7 @@ impl Summary {
             .drive
             .schedule(ScheduledParameter::StrainRate)
             .is_some();
+        let [ratios, raw_ratios] = late::flow_rate_ratios(samples, late, in_waves, changes_speed);
         let profile = late_profile(run);
         let part = |part| recorder.profile().late_part(fraction, part);
         let whole = part(WavePart::Whole);
@@ -147,7 +152,9 @@ impl Summary {
         Self {
             status,
             message,
-            flow_rate_ratio: late::flow_rate_ratio(samples, late, in_waves, changes_speed),
+            flow_rate_ratio: late::mean_ratio(&ratios),
+            late_ratios: ratios,
+            flow_rate_ratio_raw: raw_ratios.iter().sum::<f64>() / raw_ratios.len() as f64,
             transition_time: recorder.transition_time(),
             transition_times: recorder.transition_times(),
             newtonian: newtonian_reference(configuration),
@@ -254,7 +261,7 @@ impl Summary {
 
     /// Late J/Jmax, mean of its second half less that of its first; NaN below two samples.
     pub fn flow_rate_ratio_drift(&self) -> f64 {
-        let ratios = ratios_of(&self.late);
+        let ratios = &self.late_ratios;
         let (first, second) = ratios.split_at(ratios.len() / 2);
         let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
         if first.is_empty() {
@@ -283,10 +290,6 @@ impl Summary {
     fn flow_rate_ratio_variance(&self) -> f64 {
         variance(&self.late_averages)
     }
-}
-
-fn ratios_of(late: &[Sample]) -> Vec<f64> {
-    late.iter().map(|sample| sample.flow_rate_ratio).collect()
 }
 
 /// Late mean.

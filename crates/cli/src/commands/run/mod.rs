@@ -264,7 +264,7 @@ fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Re
         // A full disk or a kill may have taken what comes after the state.
         None if run.is_complete()
             && !arguments.csv
-            && (source.is_file() || RunFolder::named(source).has_results_of(&run)) =>
+            && (source.is_file() || RunFolder::named(source).has_final_results_of(&run)) =>
         {
             let (folder, reason) = (source.to_owned(), "it is complete".to_owned());
             return Err(RunError::NothingToResume { folder, reason }.into());

@@ -187,7 +187,10 @@ fn replica(
         run = lasting(arguments, run, folder.path(), stop)?;
     }
     let is_as_asked = run.configuration().run.samples == length;
-    if is_as_asked && run.is_complete() && folder.has_results_of(&run) && !asks_for_files(arguments)
+    if is_as_asked
+        && run.is_complete()
+        && folder.has_final_results_of(&run)
+        && !asks_for_files(arguments)
     {
         // Nothing is left to do, and nothing is written again.
         let summary = Summary::of(&run, Status::Complete, None);
