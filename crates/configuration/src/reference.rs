@@ -2,21 +2,21 @@
 
 use serde_json::Value;
 
-use crate::presets::PRESETS;
+use crate::presets::Preset;
 use crate::schema::joined;
 
 /// All keys of a [schema](crate::schema) as Markdown: one section per table, one row per key, with its meaning, the
-/// allowed values and the default.
+/// allowed values and the default, or else what `presets` give.
 ///
 /// `leave_out` names tables that are described elsewhere. Rows are in the order of their names.
-pub fn reference(schema: &Value, leave_out: &[&str]) -> String {
+pub fn reference(schema: &Value, leave_out: &[&str], presets: &[Preset]) -> String {
     let mut pages = String::new();
-    section(&mut pages, "", schema, leave_out);
+    section(&mut pages, "", schema, leave_out, presets);
     pages
 }
 
 /// The keys of one table, then the tables in it.
-fn section(pages: &mut String, path: &str, table: &Value, leave_out: &[&str]) {
+fn section(pages: &mut String, path: &str, table: &Value, leave_out: &[&str], presets: &[Preset]) {
     let Some(properties) = table["properties"].as_object() else {
         return;
     };
@@ -31,21 +31,21 @@ fn section(pages: &mut String, path: &str, table: &Value, leave_out: &[&str]) {
     if !keys.is_empty() {
         *pages += "| key | meaning | allowed | default |\n|---|---|---|---|\n";
         keys.iter()
-            .for_each(|(name, key)| *pages += &row(path, name, key));
+            .for_each(|(name, key)| *pages += &row(path, name, key, presets));
         *pages += "\n";
     }
     for (name, key) in &keys {
         for inner in inner_tables(key) {
             *pages += &format!("### Tables of {}\n\n", joined(path, name));
-            section(pages, "", inner, &[]);
+            section(pages, "", inner, &[], presets);
         }
     }
     for (name, inner) in tables {
-        section(pages, &joined(path, name), inner, &[]);
+        section(pages, &joined(path, name), inner, &[], presets);
     }
 }
 
-fn row(path: &str, name: &str, key: &Value) -> String {
+fn row(path: &str, name: &str, key: &Value, presets: &[Preset]) -> String {
     let mut meaning = description(key);
     for choice in choices(key) {
         if let (Some(word), Some(text)) = (choice["const"].as_str(), choice["description"].as_str())
@@ -53,7 +53,10 @@ fn row(path: &str, name: &str, key: &Value) -> String {
             meaning += &format!("<br>`{word}`: {text}");
         }
     }
-    let (name, default) = (format!("`{name}`"), default(&joined(path, name), key));
+    let (name, default) = (
+        format!("`{name}`"),
+        default(&joined(path, name), key, presets),
+    );
     let cells = [name, meaning, allowed(key), default].map(|cell| cell.replace('|', "\\|"));
     format!("| {} |\n", cells.join(" | "))
 }
@@ -123,11 +126,11 @@ fn allowed(key: &Value) -> String {
 }
 
 /// The default, else what the presets give.
-fn default(path: &str, key: &Value) -> String {
+fn default(path: &str, key: &Value, presets: &[Preset]) -> String {
     if let Some(value) = key.get("default") {
         return format!("`{}`", number(value));
     }
-    let given = PRESETS.iter().filter_map(|preset| {
+    let given = presets.iter().filter_map(|preset| {
         let table: toml::Value = toml::from_str(preset.text).ok()?;
         let value = path
             .split('.')
@@ -163,7 +166,7 @@ mod tests {
     #[test]
     fn every_key_of_the_schema_has_a_row() {
         let schema = crate::schema();
-        let pages = reference(&schema, &["resolved"]);
+        let pages = reference(&schema, &["resolved"], crate::PRESETS);
         let known = &*crate::schema::KNOWN_KEYS;
         assert!(known.len() > 60);
         for path in known.iter().filter(|path| *path != "resolved") {

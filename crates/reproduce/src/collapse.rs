@@ -297,7 +297,7 @@ pub(crate) fn distrust(draft: &mut Draft, found: &[(String, Collapsed)]) {
     let stretch = number(stretch.fold(1.0, f64::max), 1);
     if !walls.is_empty() {
         draft.finding.weaknesses.push(format!(
-            "The best exponents are not to be trusted on {}: the errors had to be stretched by up to {stretch}, or a correction to \
+            "The best exponents are not to be trusted on {}: errors had to be stretched by up to {stretch}, or a correction to \
              scaling is not ruled out.",
             match walls.len() == found.len() {
                 true => "any wall".to_owned(),

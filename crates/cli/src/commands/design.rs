@@ -42,7 +42,7 @@ pub(crate) struct DesignArguments {
 
 pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
     if arguments.keys {
-        return show(arguments.schema, &schema(), "");
+        return show(arguments.schema, &schema(), "", &[]);
     }
     let _stop = Stop::watch()?;
     let sources = &arguments.configuration;

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use clap::Args;
-use peristalsis_configuration::reference;
+use peristalsis_configuration::{PRESETS, Preset, reference};
 use serde_json::Value;
 
 use crate::commands::print_report;
@@ -18,22 +18,28 @@ pub(crate) struct SchemaArguments {
 }
 
 pub(crate) fn schema(arguments: SchemaArguments) -> Result<ExitCode, Failure> {
-    show(arguments, &peristalsis_configuration::schema(), "resolved")
+    show(
+        arguments,
+        &peristalsis_configuration::schema(),
+        "resolved",
+        PRESETS,
+    )
 }
 
 pub(crate) fn study_schema(arguments: SchemaArguments) -> Result<ExitCode, Failure> {
-    show(arguments, &peristalsis_study::schema(), "base")
+    show(arguments, &peristalsis_study::schema(), "base", &[])
 }
 
-/// `elsewhere` is a table that the tables of keys leave out.
+/// `elsewhere` is a table that the tables of keys leave out; `presets` are those of such files.
 pub(super) fn show(
     arguments: SchemaArguments,
     schema: &Value,
     elsewhere: &str,
+    presets: &[Preset],
 ) -> Result<ExitCode, Failure> {
     print_report(
         !arguments.markdown,
         || schema,
-        || reference(schema, &[elsewhere]),
+        || reference(schema, &[elsewhere], presets),
     )
 }
