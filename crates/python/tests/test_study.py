@@ -1,6 +1,7 @@
 """Studies from Python: planned, worked on, stopped, gone on with, read."""
 
 import os
+import pickle
 import signal
 import threading
 from pathlib import Path
@@ -34,6 +35,10 @@ def test_a_study_from_its_plan_to_its_rows(tmp_path: Path) -> None:
     assert study.run(workers=1) == "complete"
     again = peristalsis.Study.open(tmp_path / "store")
     assert again.name == "widths" and polars.DataFrame(again.rows()).equals(rows, null_equal=True)
+    for known in (study, again):
+        unpickled = pickle.loads(pickle.dumps(known))
+        assert unpickled.store == study.store and unpickled.counts() == {"done": 4}
+        assert [run.identity for run in unpickled.plan()] == [run.identity for run in plan]
     files = study.export(tmp_path / "tables")
     assert files and all(Path(file).exists() for file in files)
     assert "4 runs planned" in repr(study)

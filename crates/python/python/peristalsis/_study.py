@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -79,15 +79,21 @@ def study(
         name, text = "study", _toml(source)
     else:
         name, text = os.fspath(source), Path(source).read_text(encoding="utf-8")
+    return _of_text(name, text, store)
+
+
+def _of_text(name: str, text: str, store: str | os.PathLike[str] | None) -> Study:
+    """The study of a file's name and text."""
     read = _core.Study(name, text)
-    return Study(read, Path("stores", read.name) if store is None else Path(store))
+    folder = Path("stores", read.name) if store is None else Path(store)
+    return Study(read, folder, (_of_text, (name, text, folder)))
 
 
 class Study:
     """A study with the store that keeps its runs.
 
     Work on it as often as you like, in several processes at once: what is done is not done again, and the rows come out
-    the same bit for bit. Made by `study` and `Study.open`.
+    the same bit for bit. Made by `study` and `Study.open`. It can be pickled: what is unpickled has the same store.
 
     Attributes
     ----------
@@ -107,9 +113,15 @@ class Study:
     2
     """
 
-    def __init__(self, study: _core.Study, store: Path) -> None:
+    def __init__(
+        self, study: _core.Study, store: Path, made: tuple[Callable[..., Study], tuple[Any, ...]]
+    ) -> None:
         self._study = study
+        self._made = made
         self.store: Path = store
+
+    def __reduce__(self) -> tuple[Callable[..., Study], tuple[Any, ...]]:
+        return self._made
 
     @classmethod
     def open(cls, store: str | os.PathLike[str]) -> Study:
@@ -141,7 +153,7 @@ class Study:
         >>> peristalsis.Study.open(f"{folder}/store").counts()
         {'done': 2}
         """
-        return cls(_core.Study.of_store(os.fspath(store)), Path(store))
+        return cls(_core.Study.of_store(os.fspath(store)), Path(store), (cls.open, (Path(store),)))
 
     @property
     def name(self) -> str:
