@@ -195,6 +195,21 @@ mod tests {
     }
 
     #[test]
+    fn a_value_agrees_where_its_interval_is_narrow_and_holds_the_source() {
+        let of = |found: Uncertain| agrees(&found, 2.0);
+        assert_eq!(of(Uncertain::normal(2.1, 0.1)), Some(true));
+        assert_eq!(of(Uncertain::normal(2.3, 0.1)), Some(false));
+        // Three errors off, but the error comes from three values: the interval reaches 4.3 errors.
+        assert_eq!(of(Uncertain::student(2.3, 0.1, 2)), Some(true));
+        // Wide, open or not known.
+        assert_eq!(of(Uncertain::student(2.3, 0.2, 1)), None);
+        assert_eq!(of(Uncertain::student(2.3, f64::NAN, 0)), None);
+        assert_eq!(of(Uncertain::normal(2.3, f64::NAN)), None);
+        // Wide, and yet without the source's value.
+        assert_eq!(of(Uncertain::normal(5.0, 1.0)), Some(false));
+    }
+
+    #[test]
     fn one_wall_that_reproduces_suffices_and_all_must_differ() {
         let (yes, no) = (Some(true), Some(false));
         for (parts, verdict, headline) in [

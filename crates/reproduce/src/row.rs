@@ -326,7 +326,8 @@ pub(crate) fn longest<'b, 'a: 'b>(rows: impl IntoIterator<Item = &'b Row<'a>>) -
 }
 
 /// The mean of the finite values in a column; its standard error is the larger of two: from the errors in the column of the
-/// same name with `_error`, and from the scatter of the values, then with intervals of Student's distribution. NaN where neither is known; `None` without a finite value.
+/// same name with `_error`, and from the scatter of the values, then with intervals of Student's distribution. NaN where
+/// neither is known; `None` without a finite value.
 pub(crate) fn mean(rows: &[Row<'_>], column: &str) -> Option<Uncertain> {
     mean_of(rows, |row| row.number_and_error(column))
 }
