@@ -203,6 +203,13 @@ pub struct ProfileBin {
     pub wall_axial_velocity: (f64, f64),
 }
 
+impl ProfileBin {
+    /// Whether the tube was seen there: not where an open tube has ended at every look.
+    pub fn is_in_tube(&self) -> bool {
+        !self.density.0.is_nan()
+    }
+}
+
 impl WaveFrameProfile {
     /// An empty profile with `bins` bins; a block begins with `samples_per_block` samples, a wave period for instance.
     pub fn new(bins: usize, samples_per_block: u64) -> Self {

@@ -372,8 +372,8 @@ impl GrainSums {
     /// Work of the body force on the grains that have escaped, in an interval of this length.
     fn escaped_work(&self, view: &View<'_>, interval: f64) -> f64 {
         let body_force = view.simulation.parameters().body_force;
-        let across = (interval * self.escaped_momentum).with_z(self.escaped_moved);
-        body_force.dot(across)
+        let moved = (interval * self.escaped_momentum).with_z(self.escaped_moved);
+        body_force.dot(moved)
     }
 }
 

@@ -22,7 +22,6 @@ const MOST_STRETCH: f64 = 1.5;
 const MOST_BESIDE_A_CORRECTION: usize = 3;
 
 /// How far a walk along one parameter has come within an interval, and how the others go with it.
-#[derive(Clone)]
 struct Walk {
     /// Distance from the best value, and the standard deviations there.
     near: f64,
@@ -200,14 +199,7 @@ impl<'a> Found<'a> {
                 let (narrow, walked) = self.end(axis, side * NARROW, None, &better);
                 let (wide, _) = self.end(axis, side * WIDE, Some(walked), &better);
                 // Two walks may settle differently; the wide interval holds the narrow one.
-                [
-                    narrow,
-                    if side * wide < side * narrow {
-                        narrow
-                    } else {
-                        wide
-                    },
-                ]
+                [narrow, side * (side * wide).max(side * narrow)]
             });
             let interval = |width: usize| Interval::new(ends[0][width], ends[1][width]);
             let intervals = [interval(0), interval(1)];

@@ -33,18 +33,15 @@ impl LocalFlow {
 
     fn about(profile: &[ProfileBin], most: impl Fn(&ProfileBin) -> f64) -> Self {
         let bins = profile.len();
-        // Beyond an end of the tube there is none.
-        let is_there = |bin: &usize| !profile[*bin].density.0.is_nan();
         let extreme = (0..bins)
-            .filter(is_there)
+            .filter(|&bin| profile[bin].is_in_tube())
             .max_by(|&one, &other| most(&profile[one]).total_cmp(&most(&profile[other])))
             .unwrap_or(0);
         let middle = middle_of_flat(profile, extreme).unwrap_or(extreme);
         let reach = (0.5 * PART * bins as f64) as usize;
         let near: Vec<&ProfileBin> = (0..2 * reach + 1)
-            .map(|step| (middle + bins + step - reach) % bins.max(1))
-            .filter(|bin| *bin < bins && is_there(bin))
-            .map(|bin| &profile[bin])
+            .filter_map(|step| profile.get((middle + bins + step - reach) % bins))
+            .filter(|bin| bin.is_in_tube())
             .collect();
         let grains: f64 = near.iter().map(|bin| bin.density.0).sum();
         let over_grains = |value: fn(&ProfileBin) -> f64| {

@@ -154,7 +154,7 @@ impl Summary {
             message,
             flow_rate_ratio: late::mean_ratio(&ratios),
             late_ratios: ratios,
-            flow_rate_ratio_raw: raw_ratios.iter().sum::<f64>() / raw_ratios.len() as f64,
+            flow_rate_ratio_raw: mean(&raw_ratios),
             transition_time: recorder.transition_time(),
             transition_times: recorder.transition_times(),
             newtonian: newtonian_reference(configuration),
@@ -164,7 +164,7 @@ impl Summary {
             energy_residual: simulation.energy_residual(),
             pumping: Pumping::of(configuration, length, late),
             discharge: Discharge::of(run, late),
-            wall_pressure: pressures.iter().sum::<f64>() / pressures.len() as f64,
+            wall_pressure: mean(&pressures),
             wall_pressure_largest: pressures.into_iter().fold(f64::NAN, f64::max),
             wear: Wear::of(configuration, length, &whole, &profile),
             wall_torque: wall_torque(samples, late),
@@ -263,7 +263,6 @@ impl Summary {
     pub fn flow_rate_ratio_drift(&self) -> f64 {
         let ratios = &self.late_ratios;
         let (first, second) = ratios.split_at(ratios.len() / 2);
-        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
         if first.is_empty() {
             return f64::NAN;
         }
@@ -290,6 +289,11 @@ impl Summary {
     fn flow_rate_ratio_variance(&self) -> f64 {
         variance(&self.late_averages)
     }
+}
+
+/// Mean; NaN of nothing.
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Late mean.
