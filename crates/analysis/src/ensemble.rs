@@ -1,11 +1,11 @@
 //! Moments across the replicates of an ensemble.
 
 use crate::columns::{jackknife_error, mean_and_scatter};
-use crate::error::{Error, check_replica, checked, enough, same_length};
+use crate::error::{Error, check_replicate, checked, enough, same_length};
 use serde::{Deserialize, Serialize};
 
 /// Fewest replicates: the variance must exist with one of them left out.
-const LEAST_REPLICAS: usize = 3;
+const LEAST_REPLICATES: usize = 3;
 
 /// Mean and variance of independent values, with jackknife errors.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,13 +46,23 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     (mean, (scatter / (number * (number - 1.0))).sqrt())
 }
 
+/// Variance of independent values, `sum (x - <x>)^2/(n - 1)`: NaN below two of them.
+///
+/// ```
+/// assert_eq!(peristalsis_analysis::variance(&[1.0, 2.0, 3.0]), 1.0);
+/// assert!(peristalsis_analysis::variance(&[1.0]).is_nan());
+/// ```
+pub fn variance(values: &[f64]) -> f64 {
+    mean_and_scatter(values).1 / (values.len() as f64 - 1.0)
+}
+
 /// Mean and variance of independent values with their jackknife errors.
 ///
 /// The jackknife error of the variance holds for any distribution with a fourth moment. For transition times with their
 /// long tails it needs some tens of values. Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans
 /// (SIAM, 1982), chapter 3.
 pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
-    let (mean, scatter) = mean_and_scatter(checked(sample, LEAST_REPLICAS)?);
+    let (mean, scatter) = mean_and_scatter(checked(sample, LEAST_REPLICATES)?);
     let replicates = sample.len() as f64;
     let variance = scatter / (replicates - 1.0);
     let without_one: Vec<f64> = variances_without_one(sample).collect();
@@ -71,13 +81,13 @@ pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
 /// together. Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans (SIAM, 1982), chapter 3.
 ///
 /// # Errors
-/// [`Error::TooFew`] below 3 replicates or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplica`].
+/// [`Error::TooFew`] below 3 replicates or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplicate`].
 pub fn ensemble_moments<S: AsRef<[f64]>>(replicates: &[S]) -> Result<Vec<Moments>, Error> {
-    enough(replicates.len(), LEAST_REPLICAS)?;
+    enough(replicates.len(), LEAST_REPLICATES)?;
     let times = replicates[0].as_ref().len();
     for (replicate, series) in replicates.iter().map(AsRef::as_ref).enumerate() {
         same_length(times, series.len())?;
-        check_replica(replicate, series)?;
+        check_replicate(replicate, series)?;
     }
     enough(times, 1)?;
     let at = |time: usize| {
@@ -127,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn the_moments_of_an_ensemble_follow_its_replicas_in_time() {
+    fn the_moments_of_an_ensemble_follow_its_replicates_in_time() {
         // x(t) = 0.3 + a exp(-((t - 50)/10)^2), variance of a = 1.
         let replicates: Vec<Vec<f64>> = white_noise(11, 400)
             .iter()
@@ -163,7 +173,7 @@ mod tests {
         let uneven = ensemble_moments(&[vec![0.0; 3], vec![0.0; 2], vec![0.0; 3]]);
         assert_refused!(uneven => LengthMismatch { expected: 3, found: 2 });
         let hole = ensemble_moments(&[[0.0, 1.0], [0.0, f64::NAN], [0.0, 1.0]]);
-        assert_refused!(hole => NonFiniteReplica { replicate: 1, index: 1, .. });
+        assert_refused!(hole => NonFiniteReplicate { replicate: 1, index: 1, .. });
     }
 
     proptest! {

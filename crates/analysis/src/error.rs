@@ -29,7 +29,7 @@ pub enum Error {
     },
     /// A value of one replicate is infinite or not a number.
     #[error("value {index} of replicate {replicate} is {value}, which is not a finite number")]
-    NonFiniteReplica {
+    NonFiniteReplicate {
         /// Number of the replicate, from 0.
         replicate: usize,
         /// Position in the replicate, from 0.
@@ -200,9 +200,9 @@ fn first(column: &[f64], is_so: impl Fn(f64) -> bool) -> Option<(usize, f64)> {
 }
 
 /// Refuses a series of a replicate with a value that is not finite.
-pub(crate) fn check_replica(replicate: usize, series: &[f64]) -> Result<(), Error> {
+pub(crate) fn check_replicate(replicate: usize, series: &[f64]) -> Result<(), Error> {
     match first(series, |value| !value.is_finite()) {
-        Some((index, value)) => Err(Error::NonFiniteReplica {
+        Some((index, value)) => Err(Error::NonFiniteReplicate {
             replicate,
             index,
             value,

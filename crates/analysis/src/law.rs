@@ -30,7 +30,7 @@ impl Law {
     }
 
     /// Whether the law ends at a critical width.
-    pub fn is_critical(self) -> bool {
+    pub(crate) fn is_critical(self) -> bool {
         self != Self::Exponential
     }
 

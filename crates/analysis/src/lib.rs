@@ -71,7 +71,7 @@ pub use collapse_estimate::{CollapseEstimate, JointTest};
 pub use collapse_fit::{Collapse, Transform};
 pub use dip::{DipTest, dip_test};
 pub use divergence::{LawEvidence, compare_laws, compare_laws_with_scatter};
-pub use ensemble::{Moments, ensemble_moments, mean_and_error};
+pub use ensemble::{Moments, ensemble_moments, mean_and_error, variance};
 pub use ensembles::{WidthEnsemble, ensembles_by_width};
 pub use error::Error;
 pub use family::Family;

@@ -98,6 +98,27 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     typeset(&format!("{value:.decimals$}"))
 }
 
+/// A number with so many significant digits as programs write it: plain where that reads well, with a power of ten elsewhere.
+pub fn significant(value: f64, digits: usize) -> String {
+    let after_the_first = digits - 1;
+    let scientific = format!("{value:.after_the_first$e}");
+    let power = scientific.split_once('e');
+    match power.and_then(|(_, power)| power.parse::<i32>().ok()) {
+        Some(power) if ORDINARY_POWERS.contains(&power) => {
+            let decimals = usize::try_from(after_the_first as i32 - power).unwrap_or(0);
+            format!("{value:.decimals$}")
+        }
+        _ => scientific,
+    }
+}
+
+/// So many of something, in the plural where it is not one: "1 run", "2 finished runs".
+pub fn counted(number: impl fmt::Display, of: &str) -> String {
+    let number = number.to_string();
+    let plural = if number == "1" { "" } else { "s" };
+    format!("{number} {of}{plural}")
+}
+
 /// How far a number is from a reference in standard errors on that side, such as `+1.3 σ`; `None` where the data leave that
 /// side open.
 pub fn distance(number: &Uncertain, reference: f64) -> Option<String> {
@@ -340,6 +361,30 @@ mod tests {
         assert_eq!(decimal(-0.004, 2), "0.00");
         assert_eq!(decimal(-0.25, 1), "−0.2");
         assert_eq!(decimal(f64::NAN, 1), "–");
+    }
+
+    #[test]
+    fn numbers_keep_their_digits_however_small_they_are() {
+        for (value, digits, text) in [
+            (43.7012, 4, "43.70"),
+            (2.2e-5, 4, "2.200e-5"),
+            (0.0123456, 4, "0.01235"),
+            (0.99999, 4, "1.000"),
+            (123456.7, 4, "123457"),
+            (1.234567e7, 4, "1.235e7"),
+            (999_999.7, 6, "1.00000e6"),
+            (0.0, 4, "0.000"),
+            (-0.5, 4, "-0.5000"),
+            (f64::NAN, 4, "NaN"),
+        ] {
+            assert_eq!(significant(value, digits), text);
+        }
+    }
+
+    #[test]
+    fn one_is_no_plural() {
+        let texts = [counted(1, "run"), counted("1", "run"), counted(0, "run")];
+        assert_eq!(texts, ["1 run", "1 run", "0 runs"]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::bootstrap::{Bootstrap, bootstrap_errors};
 use crate::columns::{mean_and_scatter, mean_of};
-use crate::error::{Error, check_replica, enough};
+use crate::error::{Error, check_replicate, enough};
 use crate::uncertain::Uncertain;
 use serde::{Deserialize, Serialize};
 
@@ -56,7 +56,7 @@ pub struct MomentPeak {
 /// length.
 ///
 /// # Errors
-/// [`Error::TooFew`] below 3 runs or where fewer than 3 have a first sample, [`Error::NonFiniteReplica`].
+/// [`Error::TooFew`] below 3 runs or where fewer than 3 have a first sample, [`Error::NonFiniteReplicate`].
 ///
 /// ```
 /// use peristalsis_analysis::{AfterEnd, second_moment};
@@ -122,7 +122,7 @@ fn checked_runs<S: AsRef<[f64]>>(runs: &[S], after_end: AfterEnd) -> Result<Vec<
         .map(AsRef::as_ref)
         .enumerate()
         .map(|(replicate, series)| {
-            check_replica(replicate, series)?;
+            check_replicate(replicate, series)?;
             let held = match after_end {
                 AfterEnd::Hold { samples } if !series.is_empty() => {
                     let last = &series[series.len().saturating_sub(samples.max(1))..];

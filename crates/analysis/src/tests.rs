@@ -112,11 +112,11 @@ pub(crate) const fn point(x: f64, y: f64, error: f64) -> CurvePoint {
 /// watched for less.
 pub(crate) fn runs_at(
     places: &[f64],
-    replicas: usize,
+    replicates: usize,
     until: f64,
     mut time: impl FnMut(f64) -> f64,
 ) -> (Vec<f64>, Vec<Transition>) {
-    let replicate = |&place: &f64| std::iter::repeat_n(place, replicas);
+    let replicate = |&place: &f64| std::iter::repeat_n(place, replicates);
     let width: Vec<f64> = places.iter().flat_map(replicate).collect();
     let runs = width.iter().map(|&place| watched(time(place), until));
     (width.clone(), runs.collect())
@@ -126,11 +126,11 @@ pub(crate) fn runs_at(
 /// through a half at a width.
 pub(crate) fn jams_at(
     randomness: &mut Randomness,
-    [places, replicas]: [usize; 2],
+    [places, replicates]: [usize; 2],
     half: f64,
     spread: f64,
 ) -> (Vec<f64>, Vec<bool>) {
-    let width = (0..places * replicas).map(|k| 2.6 + 0.05 * (k / replicas) as f64);
+    let width = (0..places * replicates).map(|k| 2.6 + 0.05 * (k / replicates) as f64);
     let jams = |width: f64| randomness.uniform() < 1.0 / (1.0 + libm::exp((width - half) / spread));
     (width.clone().collect(), width.map(jams).collect())
 }

@@ -9,7 +9,7 @@ use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_formats::FormatError;
 use peristalsis_reproduce::ReproduceError;
-use peristalsis_run::{RenderError, RunError, RunFolder};
+use peristalsis_run::{RenderError, RunError, RunFolder, files};
 use peristalsis_study::StudyError;
 use peristalsis_viewer::ViewerError;
 
@@ -259,12 +259,10 @@ fn of_run(error: &RunError) -> Advice {
         RunError::NoMemory { .. } => wrong(
             "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)",
         ),
-        RunError::NothingToResume { folder, .. }
-            if folder.join(RunFolder::CONFIGURATION).is_file() =>
-        {
+        RunError::NothingToResume { folder, .. } if folder.join(files::CONFIGURATION).is_file() => {
             wrong(format!(
                 "begin it anew in another folder: peristalsis run {} --out DIR",
-                folder.join(RunFolder::CONFIGURATION).display()
+                folder.join(files::CONFIGURATION).display()
             ))
         }
         RunError::NothingToResume { .. } => wrong(
@@ -334,7 +332,7 @@ fn of_state(path: &Path, source: &RunError) -> String {
         }
         _ => "put the file back from a copy",
     };
-    let configuration = path.with_file_name(RunFolder::CONFIGURATION);
+    let configuration = path.with_file_name(files::CONFIGURATION);
     if !configuration.is_file() {
         return remedy.to_owned();
     }

@@ -146,7 +146,7 @@ impl Display {
 }
 
 /// What was found so far, in a few words.
-fn found(progress: &Progress) -> String {
+pub(crate) fn found(progress: &Progress) -> String {
     // A static wave counts no periods.
     let mut text = match progress.period > 0.0 {
         true => format!("t/T {:.1}", progress.period),

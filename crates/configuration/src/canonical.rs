@@ -81,7 +81,7 @@ impl Configuration {
             text += &format!("{path}={value}\n");
         }
         for schedule in &self.drive.schedules {
-            text += &format!("{}:", name(schedule.parameter));
+            text += &format!("{}:", word(schedule.parameter));
             for (time, value) in schedule.knots() {
                 let (time, value) = (bits(&time.into()), bits(&value.into()));
                 text += &format!("{time},{value};");
@@ -233,8 +233,8 @@ fn bits(value: &Value) -> String {
     }
 }
 
-/// The name of a choice in TOML.
-pub(crate) fn name(choice: impl Serialize) -> String {
+/// A choice in the word that it has in a configuration and in results.
+pub fn word(choice: impl Serialize) -> String {
     match Value::try_from(choice) {
         Ok(Value::String(name)) => name,
         other => unreachable!("a choice is a name, not {other:?}"),
@@ -252,7 +252,7 @@ fn keys_of(schedule: &Schedule) -> Vec<(&'static str, Value)> {
         ScheduleForm::Steps(steps) => ("steps", keys_of_points(steps)),
         ScheduleForm::Course(knots) => ("course", keys_of_points(knots)),
     };
-    let parameter = name(schedule.parameter);
+    let parameter = word(schedule.parameter);
     let names = [("form", form.into()), ("parameter", parameter.into())];
     names.into_iter().chain(keys).collect()
 }

@@ -382,6 +382,11 @@ impl Configuration {
         self.grains.number as f64 * largest * largest * largest / volume
     }
 
+    /// Whether contacts are kept from step to step: with friction, or in an elastic tube.
+    pub fn remembers_contacts(&self) -> bool {
+        self.contact.friction.is_some() || self.wall.elastic.is_some()
+    }
+
     /// About how many wall spheres a grain at the wall meets at once.
     pub fn wall_spheres_in_reach(&self) -> f64 {
         let reach = self.grains.diameter_max.max(self.wall.sphere_diameter);

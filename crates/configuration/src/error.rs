@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::source::{Origin, Source, SourceFile, SourceKind, line_and_column};
 
-/// Problems that are shown: who has more has one fault that makes them all.
+/// Problems that are shown at most: more than these have one cause as a rule.
 const MOST_SHOWN: usize = 20;
 
 /// Everything that was found wrong with a configuration, in the order of the texts.

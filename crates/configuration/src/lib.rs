@@ -44,6 +44,7 @@ mod suggestion;
 mod units;
 mod waveform;
 
+pub use canonical::word;
 pub use configuration::{Configuration, Control, Drive, Initial, Observe, Run, Tube, Wall};
 pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
@@ -66,5 +67,5 @@ pub use reference::reference;
 pub use schedule::{Schedule, ScheduledParameter};
 pub use schema::{schema, schema_of};
 pub use source::{Origin, SourceFile, Sources};
-pub use units::Units;
+pub use units::{HOUR, Units, grain_mass};
 pub use waveform::WaveformName;

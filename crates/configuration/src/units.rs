@@ -5,6 +5,14 @@ use std::f64::consts::PI;
 use peristalsis_physics::contact::Elasticity;
 use serde::Serialize;
 
+/// Seconds in an hour.
+pub const HOUR: f64 = 3600.0;
+
+/// Mass of a grain, m = pi rho d^3/6 \[kg\]: rho in kg m^-3, d in m.
+pub fn grain_mass(density: f64, diameter: f64) -> f64 {
+    PI / 6.0 * density * diameter * diameter * diameter
+}
+
 /// The unit of length d, the density of the grains and the elasticity of their contacts in SI.
 ///
 /// m = pi rho d^3/6;  t = sqrt(k m/k_SI) where a stiffness k scales the contact law, t = sqrt(Y m/(Y_SI d)) where Young's
@@ -39,8 +47,7 @@ impl Units {
 
     /// m \[kg\].
     pub fn mass(&self) -> f64 {
-        let diameter = self.grain_diameter;
-        PI / 6.0 * self.density * diameter * diameter * diameter
+        grain_mass(self.density, self.grain_diameter)
     }
 
     /// t \[s\].

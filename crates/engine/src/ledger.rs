@@ -91,7 +91,7 @@ impl Tally {
     }
 
     /// Power that enters from outside.
-    pub fn input_power(&self) -> f64 {
+    fn input_power(&self) -> f64 {
         self.wall_power + self.drive_power + self.keep_power
     }
 }

@@ -107,6 +107,7 @@ impl Snapshot {
             .position
             .iter()
             .chain(&bodies.velocity)
+            .chain(&bodies.angular_velocity)
             .all(|vector| vector.is_finite());
         if !finite {
             return mismatch("it holds positions or velocities that are not finite".to_owned());

@@ -18,7 +18,7 @@ pub enum Palette {
     Diverging,
     /// Light through blue, dark and red to light again, for what begins anew where it ends.
     Cyclic,
-    /// Dark violet through red to light yellow, for forces between what has other colours.
+    /// Dark violet through red to light yellow, for forces beside grains in colours of another scale.
     Force,
 }
 

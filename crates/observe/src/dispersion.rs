@@ -105,7 +105,7 @@ impl AxialDispersion {
         }
     }
 
-    /// Makes the times half as many, before one that is to be of twice as many periods.
+    /// Keeps every second time, so that the periods between two of them double.
     fn halve(&mut self) {
         fn every_other(values: &[f64], first: usize) -> Vec<f64> {
             values.iter().copied().skip(first).step_by(2).collect()

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 #[pyfunction]
 pub(crate) fn command(py: Python<'_>, words: Vec<OsString>) -> u8 {
     let code = py.detach(|| peristalsis_command::run(words));
-    // What an exit code is does not say it.
+    // An `ExitCode` does not give its number.
     let is_it = |number: &u8| ExitCode::from(*number) == code;
     (0..=u8::MAX).find(is_it).unwrap_or(1)
 }

@@ -140,7 +140,10 @@ pub(crate) fn store_rows(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
 #[pyfunction]
 pub(crate) fn store_counts<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let survey = py.detach(|| Store::open(&path)?.survey());
-    survey.map_err(of_study)?.counts().into_py_dict(py)
+    let counts = survey.map_err(of_study)?.counts().into_iter();
+    counts
+        .map(|(state, number)| (state.name(), number))
+        .into_py_dict(py)
 }
 
 /// Writes the tables of a store as Parquet and CSV; answers the files.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use peristalsis_formats::{Table, parquet};
+use peristalsis_run::files;
 use peristalsis_study::Store;
 
 use crate::error::{ReproduceError, Result};
@@ -74,19 +75,6 @@ impl Evidence {
     }
 }
 
-/// A table that a run may have kept.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Product {
-    /// A row a sample.
-    Timeseries,
-    /// The flow of each wave over each period.
-    Waves,
-    /// Late means in the wave's frame.
-    Profile,
-    /// The spheres at the end.
-    Snapshot,
-}
-
 /// The first of some runs whose product was kept, with the product; `None` where no run's was.
 pub(crate) fn first_kept<'a>(
     rows: &[Row<'a>],
@@ -111,19 +99,14 @@ impl StudyResults {
     /// # Errors
     /// Errors of reading.
     pub fn series(&self, row: &Row<'_>) -> Result<Option<Table>> {
-        self.product(row, Product::Timeseries)
+        self.product(row, files::TIMESERIES)
     }
 
-    /// A table that a run may have kept; `None` where it was not kept, or only its row was imported.
-    pub(crate) fn product(&self, row: &Row<'_>, product: Product) -> Result<Option<Table>> {
+    /// A table that a run may have kept, by the name of its [file](files); `None` where it was not kept, or only its row was
+    /// imported.
+    pub(crate) fn product(&self, row: &Row<'_>, file: &str) -> Result<Option<Table>> {
         let Ok(identity) = row.identity().parse() else {
             return Ok(None);
-        };
-        let file = match product {
-            Product::Timeseries => "timeseries.parquet",
-            Product::Waves => "waves.parquet",
-            Product::Profile => "profile.parquet",
-            Product::Snapshot => "snapshot.parquet",
         };
         let stores = [&self.store, &self.again].into_iter().flatten();
         let path = stores

@@ -89,7 +89,7 @@ impl Statistics {
 
     /// Statistics of several parts that are compared: all strain rates and runs, and the fewest widths and replicates of any
     /// part; zero where there is no part.
-    pub fn weakest(parts: impl Iterator<Item = Self>) -> Self {
+    pub(crate) fn weakest(parts: impl Iterator<Item = Self>) -> Self {
         parts
             .reduce(|one, other| Self {
                 strain_rates: one.strain_rates + other.strain_rates,

@@ -43,7 +43,7 @@ pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verd
 pub use prose::Prose;
 pub use reproduction::{
     DifferingRow, Drawn, Event, Extent, Import, ImportedRuns, Outcome, PublishedRows, Reproduction,
-    Sample, Sampling, Stage, StudyOutcome, chosen, published_in_words,
+    STORES, Sample, Sampling, Stage, StudyOutcome, chosen, published_in_words,
 };
 pub use row::{Lattice, Row, Start};
 pub use studies::{Products, STUDIES, Size, StudyFile};

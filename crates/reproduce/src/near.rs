@@ -41,7 +41,7 @@ impl Near {
         let fits: Vec<_> = fits.filter(|(_, fit)| fit.mean.error > 0.0).collect();
         let times = columns(fits.iter().map(|(width, fit)| (*width, fit.mean)), 0.0);
         let [width, time, error] = &times;
-        // A w_c among the widths is none.
+        // A fit whose w_c lies within the widths is left out.
         let last = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let is_beyond = |fit: &InverseFit| fit.critical_width.value > last;
         let curved = fit_inverse_parabola(width, time, error).ok();

@@ -8,6 +8,7 @@ use peristalsis_run::THRESHOLDS;
 
 use crate::finding::Statistics;
 use crate::thresholds::MOST_DRIFT;
+use crate::walls::{STAGGERED, wall_name};
 
 /// How the grains stood at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -16,6 +17,25 @@ pub enum Start {
     Rest,
     /// J = Jmax.
     Jammed,
+}
+
+impl Start {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Rest, Self::Jammed];
+
+    /// Its name in configurations and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::Jammed => "jammed",
+        }
+    }
+
+    /// The start of this name; all others but "jammed" begin at rest.
+    pub(crate) fn of_name(name: &str) -> Self {
+        let named = Self::ALL.into_iter().find(|start| start.name() == name);
+        named.unwrap_or(Self::Rest)
+    }
 }
 
 /// Arrangement of the wall spheres.
@@ -28,16 +48,17 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// 24 x 26, nearly smooth.
-    pub const FINE: Self = Self {
-        spheres_per_ring: 24,
-        rings_per_wave: 26,
-    };
-    /// 12 x 14, rough.
-    pub const COARSE: Self = Self {
-        spheres_per_ring: 12,
-        rings_per_wave: 14,
-    };
+    /// 24 x 26.
+    pub const FINE: Self = Self::new(24, 26);
+    /// 12 x 14.
+    pub const COARSE: Self = Self::new(12, 14);
+
+    pub(crate) const fn new(spheres_per_ring: i64, rings_per_wave: i64) -> Self {
+        Self {
+            spheres_per_ring,
+            rings_per_wave,
+        }
+    }
 
     /// Spheres per area \[1/d^2\] of a straight tube of this radius and wavelength \[d\].
     pub(crate) fn density(self, radius: f64, wavelength: f64) -> f64 {
@@ -50,10 +71,7 @@ impl Lattice {
         match self {
             Self::FINE => "fine".to_owned(),
             Self::COARSE => "coarse".to_owned(),
-            Self {
-                spheres_per_ring,
-                rings_per_wave,
-            } => format!("{spheres_per_ring} × {rings_per_wave}"),
+            _ => wall_name(self, STAGGERED),
         }
     }
 }
@@ -163,18 +181,13 @@ impl<'a> Row<'a> {
 
     /// How the grains stood at t = 0.
     pub(crate) fn start(&self) -> Start {
-        match self.text("initial_state") {
-            "jammed" => Start::Jammed,
-            _ => Start::Rest,
-        }
+        Start::of_name(self.text("initial_state"))
     }
 
     /// Arrangement of the wall spheres.
     pub(crate) fn lattice(&self) -> Lattice {
-        Lattice {
-            spheres_per_ring: self.number("spheres_per_ring") as i64,
-            rings_per_wave: self.number("rings_per_wave") as i64,
-        }
+        let number = |column| self.number(column) as i64;
+        Lattice::new(number("spheres_per_ring"), number("rings_per_wave"))
     }
 
     /// Number of the replicate.

@@ -22,27 +22,18 @@ pub(crate) struct Wall {
 
 /// All walls that are examined, in the order of the report: the one place where a wall is named.
 pub(crate) const WALLS: &[Wall] = &[
-    Wall::new("12x16", 12, 16, STAGGERED),
-    Wall::new("fine", 24, 26, STAGGERED),
-    Wall::new("coarse", 12, 14, STAGGERED),
-    Wall::new("aligned", 12, 14, "aligned"),
-    Wall::new("disordered", 16, 18, "disordered"),
+    Wall::new("12x16", Lattice::new(12, 16), STAGGERED),
+    Wall::new("fine", Lattice::FINE, STAGGERED),
+    Wall::new("coarse", Lattice::COARSE, STAGGERED),
+    Wall::new("aligned", Lattice::COARSE, "aligned"),
+    Wall::new("disordered", Lattice::new(16, 18), "disordered"),
 ];
 
 /// The arrangement that a name leaves out.
 pub(crate) const STAGGERED: &str = "staggered";
 
 impl Wall {
-    const fn new(
-        study: &'static str,
-        spheres_per_ring: i64,
-        rings_per_wave: i64,
-        arrangement: &'static str,
-    ) -> Self {
-        let lattice = Lattice {
-            spheres_per_ring,
-            rings_per_wave,
-        };
+    const fn new(study: &'static str, lattice: Lattice, arrangement: &'static str) -> Self {
         Self {
             study,
             lattice,
@@ -282,6 +273,9 @@ mod tests {
         assert_eq!(branches.len(), WALLS.len());
         assert!(branches.contains(&"branches-fine") && branches.contains(&"branches-coarse"));
         assert_eq!(of_every_wall("roughness"), ["roughness"]);
-        assert_eq!(Wall::new("x", 12, 14, "aligned").name(), "12 × 14 aligned");
+        assert_eq!(
+            Wall::new("x", Lattice::COARSE, "aligned").name(),
+            "12 × 14 aligned"
+        );
     }
 }

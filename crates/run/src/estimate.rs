@@ -13,6 +13,7 @@ use crate::assemble::{
 };
 use crate::run::Run;
 use crate::si::SiEstimate;
+use crate::spheres::SPHERE;
 use crate::trajectory::{self, TrajectoryEstimate, TrajectoryPlan, TrajectoryRequest};
 use crate::warnings::{Warning, contact_time, warnings};
 
@@ -30,10 +31,10 @@ const LEAST_STEPS: u64 = 100;
 const WALL_SPHERES_OF_A_GRAIN: f64 = 20.0;
 /// Bytes of the program itself with its figures.
 const BYTES_OF_PROGRAM: f64 = 3e7;
-/// Bytes of a smooth grain in a prescribed tube, at most: while the grains of a dense tube are packed.
+/// Bytes of a frictionless grain in a prescribed tube, at most: while the grains of a dense tube are packed.
 const BYTES_OF_GRAIN: f64 = 2000.0;
 /// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered.
-const BYTES_OF_ROUGH_GRAIN: f64 = 4000.0;
+const BYTES_WITH_CONTACTS: f64 = 4000.0;
 
 /// A run before it runs.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -206,9 +207,8 @@ pub fn restitution_at_wave_speed(configuration: &Configuration) -> f64 {
 fn memory(configuration: &Configuration) -> f64 {
     let waves = configuration.run.periods.unwrap_or(0.0) * f64::from(configuration.tube.waves);
     let samples = configuration.run.samples as f64;
-    let is_rough = configuration.contact.friction.is_some() || configuration.wall.elastic.is_some();
-    let of_sphere = if is_rough {
-        BYTES_OF_ROUGH_GRAIN
+    let of_sphere = if configuration.remembers_contacts() {
+        BYTES_WITH_CONTACTS
     } else {
         BYTES_OF_GRAIN
     };
@@ -216,6 +216,11 @@ fn memory(configuration: &Configuration) -> f64 {
         + of_sphere * moving_spheres(configuration) as f64
         + (size_of::<Sample>() as f64) * samples.min(MOST_ROWS as f64)
         + (size_of::<WaveFlow>() as f64) * waves.min(MOST_ROWS as f64)
+}
+
+/// Numbers in the table of a run's spheres, about.
+pub fn snapshot_numbers(configuration: &Configuration) -> f64 {
+    SPHERE.len() as f64 * moving_spheres(configuration) as f64
 }
 
 /// That this machine would refuse the run.

@@ -9,20 +9,15 @@ use peristalsis_configuration::Configuration;
 use peristalsis_formats::{FormatError, atomic, csv, parquet};
 
 use crate::error::RunError;
+use crate::files::{CONFIGURATION, PROFILE, STATE, SUMMARY, TIMESERIES, WAVES};
 use crate::pictures;
 use crate::run::Run;
 use crate::summary::{Status, Summary};
 use crate::tables::{profile_table, timeseries_table, transit_table, waves_table};
 use crate::trajectory::Trajectory;
 
-const CONFIGURATION: &str = RunFolder::CONFIGURATION;
-const SUMMARY: &str = "summary.json";
-const TIMESERIES: &str = "timeseries.parquet";
 const TIMESERIES_CSV: &str = "timeseries.csv";
-const PROFILE: &str = "profile.parquet";
-const WAVES: &str = "waves.parquet";
 const TRANSIT: &str = "transit.parquet";
-const STATE: &str = "state.checkpoint";
 /// Files that a run may leave besides its figures and trajectories.
 const FILES: [&str; 8] = [
     CONFIGURATION,
@@ -46,9 +41,6 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// The file of the configuration.
-    pub const CONFIGURATION: &str = "config.toml";
-
     /// Makes a folder for a new run and writes its configuration there; an empty folder may exist. Of several programs that
     /// make the same folder at once, one gets it.
     ///

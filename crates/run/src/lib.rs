@@ -10,6 +10,7 @@ mod assemble;
 mod contacts;
 mod error;
 mod estimate;
+pub mod files;
 mod folder;
 mod pace;
 mod pictures;
@@ -27,7 +28,7 @@ mod warnings;
 
 pub use assemble::{PlacedGrains, assemble, scheduled_wavelengths, walls};
 pub use error::RunError;
-pub use estimate::{Estimate, estimate, estimate_by, restitution_at_wave_speed};
+pub use estimate::{Estimate, estimate, estimate_by, restitution_at_wave_speed, snapshot_numbers};
 pub use folder::{RunFolder, next_folder, read_state, write_state};
 pub use pace::Pace;
 pub use peristalsis_configuration::Configuration;
@@ -46,8 +47,7 @@ pub use summary::{
     label, row_columns, set_by, summary_keys,
 };
 pub use tables::{
-    contacts_table, gathered, grains_table, profile_table, snapshot_table, timeseries_table,
-    transit_table, waves_table,
+    contacts_table, gathered, profile_table, snapshot_table, timeseries_table, waves_table,
 };
 pub use trajectory::{
     FrameFile, FrameFormat, FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan,

@@ -221,7 +221,7 @@ impl Recorder {
     }
 
     /// The forces at the contacts of the grains.
-    pub fn contact_forces(&self) -> &ContactForces {
+    pub(crate) fn contact_forces(&self) -> &ContactForces {
         &self.contact_forces
     }
 

@@ -63,7 +63,7 @@ const TRANSIT: &[Quantity<TransitBin>] = &[
 ///
 /// # Errors
 /// None that a caller can mend: the columns are of equal length.
-pub fn transit_table(run: &Run) -> Result<Option<Table>, FormatError> {
+pub(crate) fn transit_table(run: &Run) -> Result<Option<Table>, FormatError> {
     let Some(ends) = run.simulation().ends() else {
         return Ok(None);
     };
@@ -100,7 +100,7 @@ pub fn contacts_table(run: &Run) -> Result<Table, FormatError> {
 ///
 /// # Errors
 /// None that a caller can mend: the columns are of equal length.
-pub fn grains_table(run: &Run) -> Result<Table, FormatError> {
+pub(crate) fn grains_table(run: &Run) -> Result<Table, FormatError> {
     table(run, GRAIN, &grains(run.simulation()))
 }
 

@@ -1,7 +1,7 @@
 //! The time and disk that a study would take.
 
 use peristalsis_observe::{COLUMNS, PROFILE, Quantity, WAVES};
-use peristalsis_run::{Warning, estimate_by, warnings};
+use peristalsis_run::{Warning, estimate_by, snapshot_numbers, warnings};
 
 use crate::error::{Result, StudyError};
 use crate::plan::Plan;
@@ -14,8 +14,6 @@ const TRIALS: usize = 3;
 const BYTES_A_NUMBER: f64 = 8.0;
 /// Bytes of a run besides its tables, in blocks of the disk: configuration, row, summary, seal.
 const BYTES_A_RUN: f64 = 36_000.0;
-/// Numbers of a sphere of the snapshot.
-const SNAPSHOT_COLUMNS: f64 = 6.0;
 
 /// The estimate of a study.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -93,11 +91,10 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
             let bins = f64::from(observe.profile_bins);
             let periods = samples / f64::from(observe.samples_per_period);
             let waves = f64::from(configuration.tube.waves);
-            let spheres = configuration.grains.number + configuration.tube.wall_spheres();
             let numbers = columns * samples
                 + kept(record.profile, columns_of(PROFILE) * bins)
                 + kept(record.waves, columns_of(WAVES) * periods * waves)
-                + kept(record.snapshot, SNAPSHOT_COLUMNS * spheres as f64);
+                + kept(record.snapshot, snapshot_numbers(configuration));
             BYTES_A_RUN + BYTES_A_NUMBER * numbers
         })
         .sum();

@@ -48,4 +48,4 @@ pub use row::Row;
 pub use row_difference::RowDifference;
 pub use scheduler::{Board, Effort, Ending, Working, work_on};
 pub use specification::{Specification, schema};
-pub use store::{Entry, Exported, Packed, Staleness, State, Store, Survey, Verification};
+pub use store::{Entry, Exported, Packed, STUDY, Staleness, State, Store, Survey, Verification};

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use peristalsis_configuration::document::Node;
 use peristalsis_configuration::{
-    Configuration, ConfigurationError, InitialState, Problem, ProblemKind, Problems,
+    Configuration, ConfigurationError, InitialState, Problem, ProblemKind, Problems, word,
 };
 use peristalsis_run::Stopping;
 
@@ -104,25 +104,15 @@ impl Point {
             .filter(|(place, _)| *place != left_out)
             .map(|(_, setting)| format!("{} {}", setting.key, setting.value))
             .collect();
-        words.push(format!("from {}", state_name(self.state)));
+        words.push(format!("from {}", word(self.state)));
         words.join(", ")
     }
 
     fn order(&self, other: &Self) -> Ordering {
         let pairs = self.settings.iter().zip(&other.settings);
         let mut orders = pairs.map(|(one, other)| one.value.order(&other.value));
-        let by_state = || state_name(other.state).cmp(state_name(self.state));
+        let by_state = || word(other.state).cmp(&word(self.state));
         orders.find(|order| order.is_ne()).unwrap_or_else(by_state)
-    }
-}
-
-/// A state as the configuration calls it.
-pub(crate) fn state_name(state: InitialState) -> &'static str {
-    match state {
-        InitialState::Rest => "rest",
-        InitialState::Settled => "settled",
-        InitialState::Jammed => "jammed",
-        InitialState::Placed => "placed",
     }
 }
 

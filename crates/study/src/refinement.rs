@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, HashMap};
 
 use peristalsis_configuration::document::Item;
-use peristalsis_configuration::{ConfigurationError, InitialState};
+use peristalsis_configuration::{ConfigurationError, InitialState, word};
 
 use crate::identity::Identity;
-use crate::plan::{Plan, Point, state_name};
+use crate::plan::{Plan, Point};
 use crate::specification::{Specification, neat, number, numeric};
 
 /// Axis along which a change is looked for where the study does not refine one.
@@ -95,14 +95,14 @@ fn setting_of(study: &Specification, axis: usize) -> usize {
 
 fn lines<'a>(study: &Specification, plan: &'a Plan, axis: usize) -> Vec<Line<'a>> {
     let setting = setting_of(study, axis);
-    let mut lines: BTreeMap<(Vec<usize>, &str), Line<'a>> = BTreeMap::new();
+    let mut lines: BTreeMap<(Vec<usize>, String), Line<'a>> = BTreeMap::new();
     for (index, point) in plan.points().iter().enumerate() {
         let mut others = point.rows.clone();
         others[axis] = 0;
         let value = point.settings[setting].value.number();
         let value = value.expect("a watched axis is one of numbers");
         lines
-            .entry((others, state_name(point.state)))
+            .entry((others, word(point.state)))
             .or_default()
             .0
             .push((value, index, point));

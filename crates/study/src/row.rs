@@ -10,27 +10,6 @@ use crate::identity::{Identity, PHYSICS_VERSION};
 pub(crate) const PHYSICS: &str = "peristalsis.physics_version";
 /// Columns that rows of earlier versions lack, and what all of those had.
 const LATER: [(&str, &str); 1] = [("arrangement", "staggered")];
-/// Results, by how their names begin, that rows of earlier versions lack: they are missing there.
-pub(crate) const LATER_RESULTS: [&str; 17] = [
-    "back_flow",
-    "pressed",
-    "contact_force_",
-    "mass_flow_rate",
-    "discharge",
-    "return_rate",
-    "hold_up",
-    "transit_time",
-    "refill_efficiency",
-    "wall_torque",
-    "wear_power",
-    "wall_wear",
-    "axial_mixing",
-    "radial_mixing",
-    "radial_segregation",
-    "height_segregation",
-    "belly_segregation",
-];
-
 /// The row of one finished run, a table of one row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
@@ -51,6 +30,7 @@ fn columns() -> impl Iterator<Item = RowColumn> {
         unit,
         text,
         kind,
+        is_later: false,
     });
     place.into_iter().chain(row_columns().iter().cloned())
 }
@@ -198,8 +178,7 @@ fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, Forma
     if let (Some((_, value)), Err(_)) = (later, table.column(&column.name)) {
         return Ok(Values::Text(vec![(*value).to_owned()]));
     }
-    let is_later = LATER_RESULTS.iter().any(|it| column.name.starts_with(it));
-    if is_later && table.column(&column.name).is_err() {
+    if column.is_later && table.column(&column.name).is_err() {
         return Ok(Values::Real(vec![f64::NAN]));
     }
     let found = table.column(&column.name)?;

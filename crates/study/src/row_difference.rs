@@ -1,8 +1,9 @@
 //! Where a published row and the same row computed again differ.
 
 use peristalsis_formats::Values;
+use peristalsis_run::row_columns;
 
-use crate::row::{LATER_RESULTS, Row};
+use crate::row::Row;
 
 /// Columns that say by which program a run was computed, and not what came out.
 const PROGRAM: [&str; 2] = ["version", "revision"];
@@ -45,13 +46,17 @@ impl Row {
         let is_older = number(self, "late_periods").is_nan();
         let revision = |row: &Self| row.table().texts("revision").map(|it| it[0].clone()).ok();
         let is_of_other = revision(self) != revision(computed);
+        let later = |name: &str| {
+            row_columns()
+                .iter()
+                .any(|it| it.is_later && it.name == name)
+        };
         let mut differences = Vec::new();
         for column in self.table().columns() {
             let name = column.name.as_str();
             let here = number(self, name);
             let was_added = ADDED.iter().any(|begin| name.starts_with(begin));
-            let is_later = LATER_RESULTS.iter().any(|begin| name.starts_with(begin));
-            let was_unknown = is_older && was_added || is_later;
+            let was_unknown = is_older && was_added || later(name);
             if PROGRAM.contains(&name) || was_unknown && here.is_nan() {
                 continue;
             }

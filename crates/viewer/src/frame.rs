@@ -112,7 +112,7 @@ pub(crate) struct Shown {
     bottleneck: f64,
     wall_power: f64,
     energy_residual: f64,
-    /// Of an open tube, as is the next.
+    /// Mass that an open tube discharges a time; `hold_up` is the mass inside. NaN in a periodic tube.
     discharge_rate: f64,
     hold_up: f64,
 }
@@ -142,7 +142,7 @@ pub(crate) fn contacts_of(run: &Run) -> Vec<f64> {
         let (partner, end) = if contact.is_with_wall {
             (-1.0, contact.point)
         } else {
-            // Of its images the one that is touched.
+            // The periodic image that the grain touches.
             let centre = bodies.position[first] - contact.touching.separation;
             (second as f64, centre)
         };

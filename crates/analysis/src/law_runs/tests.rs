@@ -8,12 +8,12 @@ const WIDTHS: [f64; 9] = [2.4, 2.5, 2.6, 2.65, 2.7, 2.75, 2.78, 2.81, 2.85];
 /// at 2.78.
 fn runs(
     seed: u64,
-    replicas: usize,
+    replicates: usize,
     until: f64,
     draw: impl Fn(&mut Randomness) -> f64,
 ) -> (Vec<f64>, Vec<Transition>) {
     let mut randomness = Randomness::new(seed, 3);
-    runs_at(&WIDTHS, replicas, until, |place| match place < 2.8 {
+    runs_at(&WIDTHS, replicates, until, |place| match place < 2.8 {
         true => 10.0 / (2.8 - place) * draw(&mut randomness),
         false => f64::INFINITY * draw(&mut randomness),
     })

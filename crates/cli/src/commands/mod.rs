@@ -22,6 +22,7 @@ use std::process::ExitCode;
 use std::sync::mpsc;
 use std::time::Duration;
 
+pub(crate) use peristalsis_analysis::number::{counted, significant};
 use peristalsis_run::Warning;
 use serde::Serialize;
 
@@ -91,13 +92,6 @@ fn refuse_loss(path: &Path, kept: impl IntoIterator<Item = PathBuf>) -> Result<(
     }
 }
 
-/// So many of something, in the plural where it is not one: "1 run", "2 finished runs".
-pub(crate) fn counted(number: impl std::fmt::Display, of: &str) -> String {
-    let number = number.to_string();
-    let plural = if number == "1" { "" } else { "s" };
-    format!("{number} {of}{plural}")
-}
-
 /// Prints warnings on standard error, without those that were said before: no progress, so that they are said in quiet runs
 /// as well.
 fn warn_besides(said: &[Warning], warnings: &[Warning]) {
@@ -124,20 +118,6 @@ fn with_words<T>(words: &str, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// A number with so many significant digits, plain where that reads well and with a power of ten elsewhere.
-fn significant(value: f64, digits: usize) -> String {
-    let after_the_first = digits - 1;
-    let scientific = format!("{value:.after_the_first$e}");
-    let power = scientific.split_once('e');
-    match power.and_then(|(_, power)| power.parse::<i32>().ok()) {
-        Some(power @ -3..6) => {
-            let decimals = usize::try_from(after_the_first as i32 - power).unwrap_or(0);
-            format!("{value:.decimals$}")
-        }
-        _ => scientific,
-    }
-}
-
 /// A number that reads 0 with so many decimals as 0, which has no sign.
 pub(crate) fn unsigned_zero(value: f64, decimals: i32) -> f64 {
     match value.abs() < 0.5 * 0.1_f64.powi(decimals) {
@@ -157,17 +137,7 @@ fn rounded(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{counted, rounded, significant, unsigned_zero};
-
-    #[test]
-    fn one_is_no_plural() {
-        assert_eq!(counted(1, "run"), "1 run");
-        assert_eq!(counted(rounded(1.0), "period"), "1 period");
-        assert_eq!(
-            [0, 2].map(|number| counted(number, "run")),
-            ["0 runs", "2 runs"]
-        );
-    }
+    use super::{rounded, unsigned_zero};
 
     #[test]
     fn a_number_that_reads_zero_has_no_sign() {
@@ -181,22 +151,5 @@ mod tests {
         let numbers = [4987.531172069826, 20.0, 0.05, 249.3765586034913, 1e7, 0.0];
         let texts = ["4988", "20", "0.05", "249.4", "1.000e7", "0"];
         assert_eq!(numbers.map(rounded), texts);
-    }
-
-    #[test]
-    fn numbers_keep_their_digits_however_small_they_are() {
-        for (value, text) in [
-            (43.7012, "43.70"),
-            (2.2e-5, "2.200e-5"),
-            (0.0123456, "0.01235"),
-            (0.99999, "1.000"),
-            (123456.7, "123457"),
-            (1.234567e7, "1.235e7"),
-            (0.0, "0.000"),
-            (-0.5, "-0.5000"),
-        ] {
-            assert_eq!(significant(value, 4), text);
-        }
-        assert_eq!(significant(f64::NAN, 4), "NaN");
     }
 }

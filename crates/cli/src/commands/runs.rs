@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use peristalsis_configuration::{Configuration, Control};
-use peristalsis_run::RunFolder;
+use peristalsis_run::{RunFolder, files};
 use serde_json::{Value, json};
 
 use super::run::{RUNS, measured};
@@ -41,7 +41,7 @@ pub(crate) fn runs(arguments: &RunsArguments) -> Result<ExitCode, Failure> {
 
 /// The folders of runs below a folder, itself included, by name.
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    if folder.join(RunFolder::CONFIGURATION).is_file() {
+    if folder.join(files::CONFIGURATION).is_file() {
         found.push(folder.to_owned());
         return Ok(());
     }
@@ -75,10 +75,10 @@ fn entry(path: &Path) -> Value {
             return json!({ "folder": folder, "status": "unreadable", "message": message });
         }
     };
-    let summary = std::fs::read_to_string(path.join("summary.json")).ok();
+    let summary = std::fs::read_to_string(path.join(files::SUMMARY)).ok();
     let summary: Option<Value> = match summary.map(|text| serde_json::from_str(&text)) {
         Some(Err(error)) => {
-            let message = format!("summary.json: {error}");
+            let message = format!("{}: {error}", files::SUMMARY);
             return json!({ "folder": folder, "status": "unreadable", "message": message });
         }
         read => read.and_then(Result::ok),

@@ -7,13 +7,11 @@ use crate::configuration::{Configuration, Control};
 use crate::error::ProblemKind;
 use crate::grains::Grains;
 use crate::keys::Keys;
-use crate::units::Units;
+use crate::units::{HOUR, Units};
 
 const KIND: ProblemKind = ProblemKind::Inconsistent;
 /// Length of the stretch where grains are put in, unless it is given, in largest diameters.
 const USUAL_LENGTH: f64 = 3.0;
-/// Seconds of an hour.
-const HOUR: f64 = 3600.0;
 
 /// The inlet, with what follows from other keys; `Some(None)` for a periodic tube.
 pub(super) fn inlet(

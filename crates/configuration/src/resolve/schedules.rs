@@ -191,7 +191,7 @@ impl Scope<'_> {
     /// A value as written, in the unit of the resolved parameter.
     fn resolved(&self, value: f64, part: &str, target: &Target) -> Result<f64, Refusal> {
         if value > target.most {
-            let (name, most) = (canonical::name(target.written), target.most);
+            let (name, most) = (canonical::word(target.written), target.most);
             return refusal(part, format!("{name} = {value} is above {most}"));
         }
         Ok(match target.written {

@@ -99,7 +99,7 @@ impl<R: Real> Contact<R> {
 
     /// The part of v_i - v_j in the plane of contact.
     #[inline(always)]
-    pub fn lateral_velocity(&self) -> R::Vector {
+    pub(crate) fn lateral_velocity(&self) -> R::Vector {
         self.relative_velocity - self.normal * self.normal_velocity()
     }
 

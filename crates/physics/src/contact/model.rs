@@ -80,7 +80,7 @@ pub struct ContactModel {
     /// Force along the line of centres.
     #[serde(flatten)]
     pub normal: Normal,
-    /// Force in the plane of contact; `None`: grains are smooth and do not rotate.
+    /// Force in the plane of contact; `None`: grains are frictionless and do not rotate.
     #[serde(flatten)]
     pub friction: Option<CundallStrack>,
     /// Couple that resists rolling; `None`: grains roll freely.

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Most segments in a wavelength.
-pub const MOST_SEGMENTS: usize = 32;
+pub(crate) const MOST_SEGMENTS: usize = 32;
 
 /// The segments of a wavelength and their cycle, as a user gives them.
 ///

@@ -17,7 +17,7 @@ const OUTLIERS: usize = 32;
 const OUTLIERS_SAMPLED: usize = 7;
 /// Every so many pixels the search for a picture's colours looks at one.
 const SAMPLED: i32 = 8;
-/// Difference of red, green and blue in all up to which a pixel counts as what it was.
+/// Largest difference, over red, green and blue together, at which a pixel counts as unchanged.
 const TOLERANCE: i32 = 14;
 /// Bits of each channel that colours are told apart by while they are looked up.
 const LOOKUP_BITS: u32 = 5;

@@ -7,6 +7,7 @@ pub(super) use peristalsis_figures::chart::{
 };
 pub(super) use peristalsis_figures::{Quantity as Axis, Scale};
 pub(super) use peristalsis_formats::Table;
+pub(super) use peristalsis_run::files;
 
 pub(super) use crate::branch::*;
 pub(super) use crate::claim::Claim;
@@ -14,7 +15,7 @@ pub(super) use crate::collapse::*;
 pub(super) use crate::critical::*;
 pub(super) use crate::draft::Draft;
 pub(super) use crate::error::Result;
-pub(super) use crate::evidence::{Evidence, Product, StudyResults, first_kept};
+pub(super) use crate::evidence::{Evidence, StudyResults, first_kept};
 pub(super) use crate::exhibit::*;
 pub(super) use crate::finding::{Finding, Quantity, ReportFigure, Statistics, Verdict};
 pub(super) use crate::forces::*;

@@ -140,7 +140,7 @@ fn space_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
         return Ok(());
     };
     let row = widest[0];
-    let Some(table) = study.product(&row, Product::Waves)? else {
+    let Some(table) = study.product(&row, files::WAVES)? else {
         return Ok(());
     };
     let (wave, ratio) = (table.integers("wave")?, table.reals("flow_rate_ratio")?);

@@ -50,7 +50,7 @@ impl Sampled<'_> {
         Some(mean(&self.rows, column)?.scaled(1e3))
     }
 
-    /// The rest of a force, in thousandths: that of the rear, or of the bulge.
+    /// The rest of a force, in thousandths: that of the rear, or of the belly.
     fn rest(&self, whole: &str, part: &str) -> Option<Uncertain> {
         let rest = mean_of(&self.rows, |row| {
             let (whole, part) = (row.number_and_error(whole), row.number_and_error(part));
@@ -162,7 +162,7 @@ impl FreeFlight {
     /// Of the first run with a profile; `None` where there is none.
     fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>> {
         let Some((row, profile)) =
-            first_kept(&one.rows, |row| results.product(row, Product::Profile))?
+            first_kept(&one.rows, |row| results.product(row, files::PROFILE))?
         else {
             return Ok(None);
         };

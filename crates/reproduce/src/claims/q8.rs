@@ -23,7 +23,7 @@ struct Ladder<'a> {
 }
 
 impl<'a> Ladder<'a> {
-    /// The ladders of all strain rates and lengths.
+    /// The series of forces of all strain rates and lengths.
     fn all_of(rows: Vec<Row<'a>>) -> Vec<Self> {
         grouped(rows, |row| (row.strain_rate(), row.number("waves")))
             .into_iter()

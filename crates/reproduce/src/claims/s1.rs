@@ -60,7 +60,7 @@ impl<'a> Scene<'a> {
 
     /// The first run whose spheres were kept.
     fn picture(&self, study: &StudyResults) -> Result<Option<Picture<'a>>> {
-        let kept = first_kept(&self.rows, |row| study.product(row, Product::Snapshot))?;
+        let kept = first_kept(&self.rows, |row| study.product(row, files::SNAPSHOT))?;
         Ok(kept.map(|(row, spheres)| Picture {
             name: self.name(),
             row,

@@ -6,7 +6,8 @@ use std::sync::LazyLock;
 use peristalsis_configuration::document::{self, Table};
 use peristalsis_configuration::{
     Configuration, ConfigurationError, Grains, MATERIALS, MOST_GRAINS, Material, Problem,
-    ProblemKind, Problems, SourceFile, check_against, file_with_overrides, material, schema_of,
+    ProblemKind, Problems, SourceFile, check_against, file_with_overrides, grain_mass, material,
+    schema_of,
 };
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -240,7 +241,7 @@ fn check_together(keys: &Keys, table: &Table, problems: &mut Problems) {
 fn stiffness(keys: &Keys, density: f64) -> f64 {
     let (grain, tube) = (&keys.grain, &keys.tube);
     let d = grain.diameter;
-    let mass = PI / 6.0 * density * d * d * d;
+    let mass = grain_mass(density, d);
     let speed = keys.drive.frequency * tube.wavelength;
     // m c^2/4 = k xi^2/2, two grains that meet at c.
     let overlap = OVERLAP_OF_AN_IMPACT * d;
@@ -348,7 +349,7 @@ fn written(keys: &Keys, name: &str) -> String {
         text += &format!("body_force = {body_force:?}\n");
     }
     // The back pressure moves grains along a lying tube unless friction holds them.
-    let weight = keys.gravity * density * PI / 6.0 * d * d / stiffness;
+    let weight = keys.gravity * grain_mass(density, d) / (stiffness * d);
     let settles = tube.incline == 0.0 && body_force.abs() < friction * weight;
     let state = if settles { "settled" } else { "rest" };
     text + &format!(

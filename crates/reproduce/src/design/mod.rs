@@ -9,7 +9,7 @@ mod groups;
 mod page;
 mod published;
 
-use peristalsis_configuration::{Configuration, Control, WaveformName};
+use peristalsis_configuration::{Configuration, Control, HOUR, WaveformName};
 use peristalsis_run::Estimate;
 use serde::Serialize;
 
@@ -25,8 +25,6 @@ use crate::thresholds::{FAST, SLOW, SPLIT, UNJAMMED};
 
 /// Grains smaller than this \[m\] cohere and feel the air: Geldart's groups A and C (Powder Technol. 7, 285 (1973)).
 const SMALLEST_GRAIN: f64 = 1e-4;
-/// Seconds in an hour.
-const HOUR: f64 = 3600.0;
 
 /// A group of a design beside those of the published runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -98,12 +96,11 @@ impl Design {
             .collect();
         let si = estimate.si.as_ref();
         let largest = si.map(|si| si.largest_mass_flow_rate_kg_per_s * HOUR);
-        let starts = [("rest", Start::Rest), ("jammed", Start::Jammed)];
-        let expected = starts.into_iter().filter_map(|(name, start)| {
+        let expected = Start::ALL.into_iter().filter_map(|start| {
             let expectation = expectation(points, &values, start)?;
             let rate = |ratio: f64| largest.map(|largest| ratio * largest);
             Some(ExpectedFlow {
-                start: name,
+                start: start.name(),
                 mass_flow_rate_kg_per_h: rate(expectation.flow_rate_ratio),
                 mass_flow_rate_error_kg_per_h: rate(expectation.error),
                 expectation,

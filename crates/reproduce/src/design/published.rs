@@ -75,11 +75,7 @@ fn points(table: &Table) -> Result<Vec<Point>, FormatError> {
     }
     let point = |row: usize| Point {
         study: studies[row].clone(),
-        start: if starts[row] == "jammed" {
-            Start::Jammed
-        } else {
-            Start::Rest
-        },
+        start: Start::of_name(&starts[row]),
         groups: core::array::from_fn(|group| groups[group][row]),
         flow: flows[row],
         runs: runs[row],
@@ -93,13 +89,9 @@ fn points(table: &Table) -> Result<Vec<Point>, FormatError> {
 /// [`FormatError`] where they are no table.
 pub fn encoded(points: &[Point]) -> Result<String, FormatError> {
     let text = |value: fn(&Point) -> &str| points.iter().map(|it| value(it).to_owned()).collect();
-    let start = |point: &Point| match point.start {
-        Start::Jammed => "jammed",
-        Start::Rest => "rest",
-    };
     let mut table = Table::builder()
         .column("study", "", "", Values::Text(text(|it| &it.study)))
-        .column("start", "", "", Values::Text(text(start)));
+        .column("start", "", "", Values::Text(text(|it| it.start.name())));
     for (place, group) in ALL.iter().enumerate() {
         let values = points.iter().map(|point| rounded(point.groups[place]));
         table = table.column(group.name, "1", "", Values::Real(values.collect()));

@@ -24,7 +24,7 @@ pub use published::{DifferingRow, PublishedRows, published_in_words};
 pub use sample::{Drawn, Extent, Sample, Sampling};
 
 /// Folder of the stores below that of the results.
-const STORES: &str = "stores";
+pub const STORES: &str = "stores";
 /// Folder, beside it, of the stores that compute runs again of which only rows were imported.
 const AGAIN: &str = "again";
 
@@ -301,9 +301,9 @@ impl StudyCourse<'_> {
             && let Ok(survey) = store.survey()
         {
             let counts = survey.counts();
-            let count = |state: &str| counts.get(state).copied().unwrap_or(0);
+            let count = |state| counts.get(&state).copied().unwrap_or(0);
             outcome.runs = survey.plan.runs().len();
-            (outcome.done, outcome.failed) = (count("done"), count("failed"));
+            (outcome.done, outcome.failed) = (count(State::Done), count(State::Failed));
         }
         outcome
     }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use peristalsis_run::files;
 use peristalsis_study::{Identity, RowDifference, State, Store, StudyError};
 
 use super::{Drawn, Work};
@@ -116,7 +117,7 @@ impl PublishedRows {
                 published.differing.push(DifferingRow {
                     identity,
                     columns,
-                    configuration: again.run_folder(identity).join("config.toml"),
+                    configuration: again.run_folder(identity).join(files::CONFIGURATION),
                 });
             }
         }

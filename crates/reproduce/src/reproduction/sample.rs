@@ -16,8 +16,7 @@ use sha2::{Digest, Sha256};
 use super::{Reproduction, Work};
 use crate::error::ReproduceError;
 
-/// Grains times steps a second of one core where grains are smooth and the wall is prescribed, and elsewhere: a first guess,
-/// which the runs that were computed replace.
+/// Grains times steps a second of one core without and with contacts that are remembered: a first guess, which the runs that were computed replace.
 const SPEED: [f64; 2] = [3e7, 1e7];
 /// Seconds that any run takes beside its steps.
 const SECONDS_A_RUN: f64 = 0.1;
@@ -25,7 +24,7 @@ const SECONDS_A_RUN: f64 = 0.1;
 const WEIGHT_OF_GUESS: f64 = 5.0;
 /// Largest part of the time that one run may take: so that there is time for every study.
 const LARGEST_PART: f64 = 0.25;
-/// Time between two looks: how fast it obeys and shows.
+/// Time between two looks: how late it stops and shows.
 const TICK: Duration = Duration::from_millis(50);
 
 /// How many of the published rows are computed again.
@@ -152,8 +151,7 @@ impl<'a> Deck<'a> {
 
 /// Grains times steps a second of one core.
 fn speed(configuration: &Configuration) -> f64 {
-    let is_rough = configuration.contact.friction.is_some() || configuration.wall.elastic.is_some();
-    SPEED[usize::from(is_rough)]
+    SPEED[usize::from(configuration.remembers_contacts())]
 }
 
 /// Place of a run in the order of a draw.

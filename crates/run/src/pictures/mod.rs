@@ -5,7 +5,7 @@ mod profile;
 mod snapshot;
 
 use peristalsis_analysis::number::{plain, with_error};
-use peristalsis_configuration::{Configuration, Control, ScheduledParameter, WaveformName};
+use peristalsis_configuration::{Configuration, Control, ScheduledParameter, WaveformName, word};
 use peristalsis_figures::chart::{
     Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
     Reference, Tint,
@@ -17,7 +17,7 @@ use peristalsis_figures::{
 use crate::error::RunError;
 use crate::run::Run;
 use crate::scene::{refused, units};
-use crate::summary::{Summary, word};
+use crate::summary::Summary;
 use crate::tables::late_profile;
 
 use self::discharge::discharge;

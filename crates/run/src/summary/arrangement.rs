@@ -75,8 +75,7 @@ fn measured(
     let periods = late.iter().rev().step_by(each);
     let values: Option<Vec<f64>> = periods.map(value).collect();
     let values = values.filter(|it| !it.is_empty())?;
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
-    Some((mean, error_of(values.into_iter())))
+    Some((super::mean(&values), error_of(values.into_iter())))
 }
 
 #[cfg(test)]

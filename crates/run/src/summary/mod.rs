@@ -8,6 +8,7 @@ mod table;
 mod written;
 
 use peristalsis_analysis::number::known_error;
+use peristalsis_analysis::variance;
 use peristalsis_configuration::{Configuration, ScheduledParameter, Units};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
@@ -17,7 +18,6 @@ pub use discharge::Discharge;
 use late::{ForceOfContacts, axial_dispersion, error_of, residence_time, wall_torque};
 pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;
-pub(crate) use table::word;
 pub use written::{RowColumn, SummaryKey, label, row_columns, set_by, summary_keys};
 
 use crate::assemble::newtonian_reference;
@@ -299,15 +299,4 @@ fn mean(values: &[f64]) -> f64 {
 /// Late mean.
 fn mean_of(late: &[Sample], value: impl Fn(&Sample) -> f64) -> f64 {
     late.iter().map(value).sum::<f64>() / late.len() as f64
-}
-
-/// Variance with the divisor n - 1; NaN below two values.
-fn variance(values: &[f64]) -> f64 {
-    let number = values.len() as f64;
-    if values.len() < 2 {
-        return f64::NAN;
-    }
-    let mean = values.iter().sum::<f64>() / number;
-    let squares: f64 = values.iter().map(|one| (one - mean) * (one - mean)).sum();
-    squares / (number - 1.0)
 }

@@ -1,7 +1,7 @@
 //! The table of a run's quantities: a quantity is one row here, and `summary.json`, the rows of studies, SI, the
 //! labels of the viewer and the documentation follow.
 
-use peristalsis_configuration::{Configuration, ScheduledParameter as Parameter, Units};
+use peristalsis_configuration::{Configuration, ScheduledParameter as Parameter, Units, word};
 use peristalsis_observe::Reading::{
     Measured, Optional, OptionalMeasured, Real, Text, Truth, Whole,
 };
@@ -21,6 +21,8 @@ pub(super) struct RunQuantity {
     pub(super) in_rows: bool,
     /// Words or symbol at an axis; empty where the name serves.
     pub(super) label: &'static str,
+    /// Whether rows of earlier programs lack it.
+    pub(super) is_later: bool,
 }
 
 /// The origin of a quantity's value.
@@ -60,6 +62,7 @@ impl RunQuantity {
             key: name,
             in_rows: true,
             label: "",
+            is_later: false,
         }
     }
 
@@ -77,6 +80,14 @@ impl RunQuantity {
     const fn only_in_summary(self) -> Self {
         Self {
             in_rows: false,
+            ..self
+        }
+    }
+
+    /// Added since rows were first published.
+    const fn later(self) -> Self {
+        Self {
+            is_later: true,
             ..self
         }
     }
@@ -152,18 +163,18 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("front_tangential_force", "m d/t^2", "part of wall_tangential_force in the front of the wave", Measured(|s| s.front.tangential_force)),
     result("wall_pressure", "m/(d t^2)", "late mean pressure on the wall (of an open tube between its ends), each bin of the profile alike", Real(|s| s.wall_pressure)),
     result("wall_pressure_largest", "m/(d t^2)", "largest late mean pressure on the wall over the positions in the wave frame", Real(|s| s.wall_pressure_largest)),
-    result("contact_force_99", "m d/t^2", "late mean of the normal force that 99 % of the grains' contacts do not exceed", OptionalMeasured(|s| s.contact_force.map(|force| force.high))).labelled("99 % contact force"),
-    result("contact_force_largest", "m d/t^2", "largest normal force at a contact of a grain, at the late moments that were looked at", Optional(|s| s.contact_force.map(|force| force.largest))).labelled("largest contact force"),
-    result("wall_torque", "m d^2/t^2", "wall_power over 2 pi f, f the frequency of the wave: torque of a shaft that makes one wave a turn; missing for a static wave", OptionalMeasured(|s| s.wall_torque)).labelled("torque of the wall"),
-    result("wear_power", "m d^2/t^3", "late mean power that grains lose where they slide on the wall, in the whole tube; missing without friction", OptionalMeasured(|s| s.wear.map(|it| it.power))).labelled("power of wear"),
-    result("wall_wear", "m/t^3", "the same per area of the wall", OptionalMeasured(|s| s.wear.map(|it| it.power_per_area))).labelled("wear of the wall"),
-    result("axial_mixing", "1", "late mean of Lacey's index of the halves that began in front and behind: 0 apart, 1 at random; missing in an open tube", OptionalMeasured(|s| s.mixed.map(|it| it.axial))).labelled("axial mixing"),
-    result("radial_mixing", "1", "the same of the halves that began near the axis and near the wall", OptionalMeasured(|s| s.mixed.map(|it| it.radial))).labelled("radial mixing"),
-    result("axial_mixing_time", "t", "end of the first period in which axial mixing has come to 1/2; missing where it has not", Optional(|s| s.mixed?.axial_time)).labelled("axial mixing time"),
-    result("radial_mixing_time", "t", "the same of radial mixing", Optional(|s| s.mixed?.radial_time)).labelled("radial mixing time"),
-    result("radial_segregation", "1", "late mean correlation of diameter and radial place: positive where large grains are outside; missing for one size", OptionalMeasured(|s| s.segregated.radial)).labelled("radial segregation"),
-    result("height_segregation", "1", "late mean correlation of diameter and height: positive where large grains are on top; missing without gravity across", OptionalMeasured(|s| s.segregated.height)).labelled("segregation by height"),
-    result("belly_segregation", "1", "late mean correlation of diameter and the tube's radius: positive where large grains are in the bellies", OptionalMeasured(|s| s.segregated.belly)).labelled("segregation by position in the wave"),
+    result("contact_force_99", "m d/t^2", "late mean of the normal force that 99 % of the grains' contacts do not exceed", OptionalMeasured(|s| s.contact_force.map(|force| force.high))).labelled("99 % contact force").later(),
+    result("contact_force_largest", "m d/t^2", "largest normal force at a contact of a grain, at the late moments that were looked at", Optional(|s| s.contact_force.map(|force| force.largest))).labelled("largest contact force").later(),
+    result("wall_torque", "m d^2/t^2", "wall_power over 2 pi f, f the frequency of the wave: torque of a shaft that makes one wave a turn; missing for a static wave", OptionalMeasured(|s| s.wall_torque)).labelled("torque of the wall").later(),
+    result("wear_power", "m d^2/t^3", "late mean power that grains lose where they slide on the wall, in the whole tube; missing without friction", OptionalMeasured(|s| s.wear.map(|it| it.power))).labelled("power of wear").later(),
+    result("wall_wear", "m/t^3", "the same per area of the wall", OptionalMeasured(|s| s.wear.map(|it| it.power_per_area))).labelled("wear of the wall").later(),
+    result("axial_mixing", "1", "late mean of Lacey's index of the halves that began in front and behind: 0 apart, 1 at random; missing in an open tube", OptionalMeasured(|s| s.mixed.map(|it| it.axial))).labelled("axial mixing").later(),
+    result("radial_mixing", "1", "the same of the halves that began near the axis and near the wall", OptionalMeasured(|s| s.mixed.map(|it| it.radial))).labelled("radial mixing").later(),
+    result("axial_mixing_time", "t", "end of the first period in which axial mixing has come to 1/2; missing where it has not", Optional(|s| s.mixed?.axial_time)).labelled("axial mixing time").later(),
+    result("radial_mixing_time", "t", "the same of radial mixing", Optional(|s| s.mixed?.radial_time)).labelled("radial mixing time").later(),
+    result("radial_segregation", "1", "late mean correlation of diameter and radial place: positive where large grains are outside; missing for one size", OptionalMeasured(|s| s.segregated.radial)).labelled("radial segregation").later(),
+    result("height_segregation", "1", "late mean correlation of diameter and height: positive where large grains are on top; missing without gravity across", OptionalMeasured(|s| s.segregated.height)).labelled("segregation by height").later(),
+    result("belly_segregation", "1", "late mean correlation of diameter and the tube's radius: positive where large grains are in the bellies", OptionalMeasured(|s| s.segregated.belly)).labelled("segregation by position in the wave").later(),
     result("residence_time", "t", "late mean time of a grain through the tube, N/J; missing where the flow is not along the wave", OptionalMeasured(|s| s.residence_time)).labelled("residence time"),
     result("axial_dispersion", "d^2/t", "half the late rate at which the variance of axial displacements grows from period to period", Measured(|s| s.axial_dispersion)).labelled("axial dispersion"),
     result("late_periods", "1", "periods of samples that late means are over: of drive.strain_rate, or of observe.samples_per_period where the wave stands", Real(Summary::late_periods)),
@@ -173,28 +184,28 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("belly_density", "1/d", "the same where the tube is widest", Real(|s| s.belly.density)).at("belly.density"),
     result("belly_axial_velocity", "d/t", "the same where the tube is widest", Real(|s| s.belly.axial_velocity)).at("belly.axial_velocity"),
     result("belly_granular_temperature", "m d^2/t^2", "the same where the tube is widest", Real(|s| s.belly.granular_temperature)).at("belly.granular_temperature"),
-    result("back_flow", "1/t", "late mean of -J where J < 0, each J the mean over the interval of a sample: what flows back in a stroke", Measured(|s| s.back_flow())).labelled("back flow"),
-    result("pressed", "1", "part of the late samples at which a grain overlaps another or the wall by more than 0.1 d", Real(Summary::pressed)),
-    result("discharge_rate", "m/t", "late mean mass that leaves an open tube through its outlet", OptionalMeasured(|s| s.discharge.map(|it| it.rate))).at("open.discharge_rate").labelled("discharge rate"),
-    result("return_rate", "m/t", "late mean mass that leaves an open tube through its inlet, against the flow", OptionalMeasured(|s| s.discharge.map(|it| it.return_rate))).at("open.return_rate").labelled("return rate"),
-    result("hold_up", "m", "late mean mass of the grains between the ends of an open tube", OptionalMeasured(|s| s.discharge.map(|it| it.hold_up))).at("open.hold_up").labelled("hold-up"),
-    result("discharged", "m", "mass that has left an open tube through its outlet since the start", Optional(|s| s.discharge.map(|it| it.discharged))).at("open.discharged").labelled("mass discharged"),
-    result("transit_time", "t", "mean time from the inlet to the outlet of the grains that have gone all the way in the run", OptionalMeasured(|s| s.discharge.map(|it| it.transit_time))).at("open.transit_time").labelled("transit time"),
-    result("transit_time_variance", "t^2", "variance of that time", Optional(|s| s.discharge.map(|it| it.transit_time_variance))).at("open.transit_time_variance").labelled("variance of the transit time"),
-    result("refill_efficiency", "1", "volume of the grains discharged in a period over the clear volume of a wavelength; missing for a static wave", OptionalMeasured(|s| s.discharge?.refill_efficiency)).at("open.refill_efficiency").labelled("refill efficiency"),
-    result("discharge_rate_si", "kg/s", "discharge_rate in SI; missing without the table units", OptionalMeasured(|s| s.measured_in_si(s.discharge?.rate, Units::mass_flow))).at("si.discharge_rate_kg_per_s"),
-    result("mass_flow_rate", "m/t", "late mean mass that flows along the wave, sum m v_z over L, grains inside", Measured(Summary::mass_flow_rate)).labelled("mass flow rate"),
-    result("mass_flow_rate_si", "kg/s", "mass_flow_rate in SI; missing without the table units", OptionalMeasured(|s| s.mass_flow_rate_in_si())).at("si.mass_flow_rate_kg_per_s"),
+    result("back_flow", "1/t", "late mean of -J where J < 0, each J the mean over the interval of a sample: what flows back in a stroke", Measured(|s| s.back_flow())).labelled("back flow").later(),
+    result("pressed", "1", "part of the late samples at which a grain overlaps another or the wall by more than 0.1 d", Real(Summary::pressed)).later(),
+    result("discharge_rate", "m/t", "late mean mass that leaves an open tube through its outlet", OptionalMeasured(|s| s.discharge.map(|it| it.rate))).at("open.discharge_rate").labelled("discharge rate").later(),
+    result("return_rate", "m/t", "late mean mass that leaves an open tube through its inlet, against the flow", OptionalMeasured(|s| s.discharge.map(|it| it.return_rate))).at("open.return_rate").labelled("return rate").later(),
+    result("hold_up", "m", "late mean mass of the grains between the ends of an open tube", OptionalMeasured(|s| s.discharge.map(|it| it.hold_up))).at("open.hold_up").labelled("hold-up").later(),
+    result("discharged", "m", "mass that has left an open tube through its outlet since the start", Optional(|s| s.discharge.map(|it| it.discharged))).at("open.discharged").labelled("mass discharged").later(),
+    result("transit_time", "t", "mean time from the inlet to the outlet of the grains that have gone all the way in the run", OptionalMeasured(|s| s.discharge.map(|it| it.transit_time))).at("open.transit_time").labelled("transit time").later(),
+    result("transit_time_variance", "t^2", "variance of that time", Optional(|s| s.discharge.map(|it| it.transit_time_variance))).at("open.transit_time_variance").labelled("variance of the transit time").later(),
+    result("refill_efficiency", "1", "volume of the grains discharged in a period over the clear volume of a wavelength; missing for a static wave", OptionalMeasured(|s| s.discharge?.refill_efficiency)).at("open.refill_efficiency").labelled("refill efficiency").later(),
+    result("discharge_rate_si", "kg/s", "discharge_rate in SI; missing without the table units", OptionalMeasured(|s| s.measured_in_si(s.discharge?.rate, Units::mass_flow))).at("si.discharge_rate_kg_per_s").later(),
+    result("mass_flow_rate", "m/t", "late mean mass that flows along the wave, sum m v_z over L, grains inside", Measured(Summary::mass_flow_rate)).labelled("mass flow rate").later(),
+    result("mass_flow_rate_si", "kg/s", "mass_flow_rate in SI; missing without the table units", OptionalMeasured(|s| s.mass_flow_rate_in_si())).at("si.mass_flow_rate_kg_per_s").later(),
     result("wall_power_si", "W", "wall_power in SI; missing without the table units", Optional(|s| s.in_si(s.wall_power(), Units::power))).at("si.wall_power_w"),
     result("useful_power_si", "W", "useful_power in SI; missing without the table units", Optional(|s| s.in_si(s.pumping?.useful_power.0, Units::power))).at("si.useful_power_w"),
     result("pressure_rise_si", "Pa", "pressure_rise in SI; missing without the table units", Optional(|s| s.in_si(s.pumping?.pressure_rise, Units::pressure))).at("si.pressure_rise_pa"),
     result("wall_pressure_si", "Pa", "wall_pressure in SI; missing without the table units", Optional(|s| s.in_si(s.wall_pressure, Units::pressure))).at("si.wall_pressure_pa"),
     result("wall_pressure_largest_si", "Pa", "wall_pressure_largest in SI; missing without the table units", Optional(|s| s.in_si(s.wall_pressure_largest, Units::pressure))).at("si.wall_pressure_largest_pa"),
-    result("contact_force_99_si", "N", "contact_force_99 in SI; missing without the table units", Optional(|s| s.in_si(s.contact_force?.high.0, Units::force))).at("si.contact_force_99_n"),
-    result("contact_force_largest_si", "N", "contact_force_largest in SI; missing without the table units", Optional(|s| s.in_si(s.contact_force?.largest, Units::force))).at("si.contact_force_largest_n"),
-    result("wall_torque_si", "N m", "wall_torque in SI; missing without the table units", Optional(|s| s.in_si(s.wall_torque?.0, Units::energy))).at("si.wall_torque_n_m"),
-    result("wear_power_si", "W", "wear_power in SI; missing without the table units", Optional(|s| s.in_si(s.wear?.power.0, Units::power))).at("si.wear_power_w"),
-    result("wall_wear_si", "W/m^2", "wall_wear in SI; missing without the table units", Optional(|s| s.in_si(s.in_si(s.wear?.power_per_area.0, Units::pressure)?, Units::velocity))).at("si.wall_wear_w_per_m2"),
+    result("contact_force_99_si", "N", "contact_force_99 in SI; missing without the table units", Optional(|s| s.in_si(s.contact_force?.high.0, Units::force))).at("si.contact_force_99_n").later(),
+    result("contact_force_largest_si", "N", "contact_force_largest in SI; missing without the table units", Optional(|s| s.in_si(s.contact_force?.largest, Units::force))).at("si.contact_force_largest_n").later(),
+    result("wall_torque_si", "N m", "wall_torque in SI; missing without the table units", Optional(|s| s.in_si(s.wall_torque?.0, Units::energy))).at("si.wall_torque_n_m").later(),
+    result("wear_power_si", "W", "wear_power in SI; missing without the table units", Optional(|s| s.in_si(s.wear?.power.0, Units::power))).at("si.wear_power_w").later(),
+    result("wall_wear_si", "W/m^2", "wall_wear in SI; missing without the table units", Optional(|s| s.in_si(s.in_si(s.wear?.power_per_area.0, Units::pressure)?, Units::velocity))).at("si.wall_wear_w_per_m2").later(),
     result("transition_time_si", "s", "transition_time in SI", Optional(|s| s.in_si(s.transition_time?, Units::time))).at("si.transition_time_s").only_in_summary(),
     result("residence_time_si", "s", "residence_time in SI", Optional(|s| s.in_si(s.residence_time?.0, Units::time))).at("si.residence_time_s").only_in_summary(),
     result("axial_dispersion_si", "m^2/s", "axial_dispersion in SI", Optional(|s| s.in_si(s.in_si(s.axial_dispersion.0, Units::length)?, Units::velocity))).at("si.axial_dispersion_m2_per_s").only_in_summary(),
@@ -205,10 +216,3 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("version", "", "version of the program", Text(|_| VERSION.to_owned())),
     result("revision", "", "revision of its source", Text(|_| REVISION.to_owned())),
 ];
-
-/// A choice in the word that it has in a configuration and in results.
-pub(crate) fn word(choice: impl serde::Serialize) -> String {
-    let text = serde_json::to_value(choice).ok();
-    text.and_then(|it| it.as_str().map(str::to_owned))
-        .unwrap_or_default()
-}

@@ -23,10 +23,12 @@ pub struct RowColumn {
     pub text: &'static str,
     /// Kind of its values.
     pub kind: ValueKind,
+    /// Whether rows of earlier programs lack it; it is missing there.
+    pub is_later: bool,
 }
 
 impl RowColumn {
-    fn of<Of>(quantity: &Quantity<Of>) -> Vec<Self> {
+    fn of<Of>(quantity: &Quantity<Of>, is_later: bool) -> Vec<Self> {
         let headings = quantity.headings().into_iter();
         headings
             .map(|(name, text)| Self {
@@ -34,6 +36,7 @@ impl RowColumn {
                 unit: quantity.unit,
                 text,
                 kind: kind(&quantity.reading),
+                is_later,
             })
             .collect()
     }
@@ -42,8 +45,8 @@ impl RowColumn {
 impl RunQuantity {
     fn columns(&self) -> Vec<RowColumn> {
         match &self.source {
-            Source::Setting(quantity) => RowColumn::of(quantity),
-            Source::Result(quantity) => RowColumn::of(quantity),
+            Source::Setting(quantity) => RowColumn::of(quantity, self.is_later),
+            Source::Result(quantity) => RowColumn::of(quantity, self.is_later),
         }
     }
 
@@ -207,7 +210,7 @@ impl Serialize for Summary {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Status, variance};
+    use super::super::Status;
     use super::*;
     use crate::run::Run;
 
@@ -245,11 +248,5 @@ mod tests {
             // Neither has units.
             assert!(is_in_one || key.key.starts_with("si."), "{}", key.key);
         }
-    }
-
-    #[test]
-    fn a_variance_takes_two_values() {
-        assert!((variance(&[1.0, 2.0, 3.0]) - 1.0).abs() < 1e-12);
-        assert!(variance(&[1.0]).is_nan());
     }
 }

@@ -20,7 +20,7 @@ use crate::specification::Specification;
 use crate::store::{Assignment, Claim, Entry, Index, LEASE_TIMEOUT, Owner, State, Store, finding};
 pub use board::{Board, Working};
 
-/// Time between two looks of the coordinator: how fast it obeys and shows.
+/// Time between two looks of the coordinator: how late it stops and shows.
 const TICK: Duration = Duration::from_millis(50);
 /// Time between two heartbeats.
 const HEARTBEAT: Duration = Duration::from_secs(5);

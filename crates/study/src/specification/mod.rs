@@ -11,14 +11,14 @@ use std::{fs, io};
 use peristalsis_configuration::document::{self, Item, Node, Table};
 use peristalsis_configuration::{
     Configuration, ConfigurationError, InitialState, Origin, Problem, ProblemKind, Problems,
-    SourceFile, Sources, check_against, join,
+    SourceFile, Sources, check_against, join, word,
 };
 use peristalsis_run::Stopping;
 use serde::Deserialize;
 
 use crate::error::{Result, StudyError};
 use crate::identity::{Record, column_names};
-use crate::plan::{Plan, PlannedRun, state_name};
+use crate::plan::{Plan, PlannedRun};
 use axis::Axis;
 pub(crate) use axis::{neat, number, numeric};
 pub use keys::schema;
@@ -212,7 +212,7 @@ impl Specification {
         // All in one layer, so that two axes for two alternatives (width and amplitude) are found to conflict.
         let above = [self.base.table.clone(), join(settings.collect())];
         // Below `base`, which does not name a state where `states` does.
-        let state = state.map(|state| format!("initial.state={}", state_name(state)));
+        let state = state.map(|state| format!("initial.state={}", word(state)));
         let overrides: Vec<String> = state.into_iter().collect();
         Configuration::from_sources_and(
             &Sources {

@@ -8,7 +8,7 @@ use super::owner::{Owner, now};
 const MOST_AHEAD: i64 = 3600;
 
 /// The state of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
     /// Nothing is there yet.
@@ -36,6 +36,11 @@ impl State {
             Self::Failed => "failed",
             Self::Quarantined => "quarantined",
         }
+    }
+
+    /// Whether it may still give a row.
+    pub fn is_unfinished(self) -> bool {
+        matches!(self, Self::Pending | Self::Leased | Self::Checkpointed)
     }
 
     pub(crate) fn of_name(name: &str) -> Self {

@@ -4,9 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use peristalsis_formats::{Column, Table, Values, csv, parquet};
+use peristalsis_run::files;
 use serde_json::Value;
 
-use super::run_files::{TIMES, TIMESERIES, TIMING};
+use super::run_files::{TIMES, TIMING};
 use super::{Index, Store, Survey, Verdict};
 use crate::error::{Result, StudyError};
 use crate::identity::{Identity, PHYSICS_VERSION};
@@ -196,7 +197,7 @@ impl Store {
         ];
         let mut series = Vec::new();
         for identity in computed(finished) {
-            let table = parquet::read(&self.run_folder(identity).join(TIMESERIES))?;
+            let table = parquet::read(&self.run_folder(identity).join(files::TIMESERIES))?;
             let values = columns.map(|[name, ..]| match table.reals(name) {
                 Ok(values) => values.to_vec(),
                 // A study may keep other columns.

@@ -44,7 +44,8 @@ pub use staleness::Staleness;
 pub use survey::Survey;
 pub(crate) use survey::finding;
 
-const STUDY: &str = "study.toml";
+/// The file by which a store is known.
+pub const STUDY: &str = "study.toml";
 const BASE: &str = "base.toml";
 const INDEX: &str = "index.sqlite";
 const RUNS: &str = "runs";

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use peristalsis_configuration::Configuration;
 use peristalsis_formats::{Table, atomic, parquet};
+use peristalsis_run::files::{CONFIGURATION, PROFILE, SNAPSHOT, STATE, SUMMARY, TIMESERIES, WAVES};
 use peristalsis_run::{
     Run, RunError, Stopping, Summary, profile_table, snapshot_table, timeseries_table, waves_table,
 };
@@ -18,16 +19,10 @@ use crate::identity::{Identity, PHYSICS_VERSION, Record};
 use crate::plan::{Plan, PlannedRun};
 use crate::row::Row;
 
-const CONFIGURATION: &str = "config.toml";
 /// The file that signac and row look for beside each run.
 pub(crate) const STATEPOINT: &str = "signac_statepoint.json";
 /// The newer and the older generation of the state.
-const CHECKPOINTS: [&str; 2] = ["state.checkpoint", "state.checkpoint.1"];
-pub(crate) const TIMESERIES: &str = "timeseries.parquet";
-const PROFILE: &str = "profile.parquet";
-const WAVES: &str = "waves.parquet";
-const SNAPSHOT: &str = "snapshot.parquet";
-const SUMMARY: &str = "summary.json";
+const CHECKPOINTS: [&str; 2] = [STATE, "state.checkpoint.1"];
 const ROW: &str = "row.csv";
 /// The time that the run took: the one file of a finished run without a hash in the seal, for it differs each time.
 pub(crate) const TIMING: &str = "timing.json";

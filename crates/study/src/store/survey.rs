@@ -55,10 +55,10 @@ impl Survey {
     }
 
     /// Runs of the plan in each state.
-    pub fn counts(&self) -> BTreeMap<&'static str, usize> {
+    pub fn counts(&self) -> BTreeMap<State, usize> {
         let mut counts = BTreeMap::new();
         for run in self.plan.runs() {
-            *counts.entry(self.state(run.identity).name()).or_default() += 1;
+            *counts.entry(self.state(run.identity)).or_default() += 1;
         }
         counts
     }

@@ -179,8 +179,8 @@ fn a_run_that_fails_is_kept_with_its_reason_and_can_be_tried_again() {
     let place = Place::new(&text);
     let news = place.complete();
     let survey = place.store().survey().unwrap();
-    assert_eq!(survey.counts()["done"], 3);
-    assert_eq!(survey.counts()["failed"], 3, "{news:?}");
+    assert_eq!(survey.counts()[&State::Done], 3);
+    assert_eq!(survey.counts()[&State::Failed], 3, "{news:?}");
     assert_eq!(news.len(), 3, "{news:?}");
     let failed: Vec<_> = survey
         .plan
@@ -200,7 +200,7 @@ fn a_run_that_fails_is_kept_with_its_reason_and_can_be_tried_again() {
     let table = fs::read_to_string(place.path("out/small-failed.csv")).unwrap();
     assert_eq!(table.lines().count(), 1 + 3, "{table}");
     fs::remove_file(place.path("store/index.sqlite")).unwrap();
-    assert_eq!(place.store().survey().unwrap().counts()["failed"], 3);
+    assert_eq!(place.store().survey().unwrap().counts()[&State::Failed], 3);
     assert_eq!(place.complete(), Vec::<String>::new());
 
     assert!(place.store().retry(failed[0].identity).unwrap());
@@ -209,7 +209,7 @@ fn a_run_that_fails_is_kept_with_its_reason_and_can_be_tried_again() {
     assert!(!place.store().retry(failed[0].identity).unwrap());
     // The same physics comes to the same end.
     assert_eq!(place.complete().len(), 1);
-    assert_eq!(place.store().survey().unwrap().counts()["failed"], 3);
+    assert_eq!(place.store().survey().unwrap().counts()[&State::Failed], 3);
 }
 
 #[test]

@@ -100,8 +100,8 @@ fn a_limit_of_time_ends_the_work_with_every_run_saved() {
     let ending = work_on(&place.store(), &place.study, effort, &|| false, &mut |_| {});
     assert_eq!(ending.unwrap(), Ending::TimeUp);
     let survey = place.store().survey().unwrap();
-    assert_eq!(survey.counts()["checkpointed"], 2);
-    assert_eq!(survey.counts()["pending"], 4);
+    assert_eq!(survey.counts()[&State::Checkpointed], 2);
+    assert_eq!(survey.counts()[&State::Pending], 4);
     assert!(survey.leases.is_empty());
 }
 

@@ -6,21 +6,17 @@ use std::time::{Duration, Instant};
 
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_formats::{Table, Values, parquet};
-use peristalsis_run::{TrajectoryFormat, label};
+use peristalsis_run::{TrajectoryFormat, files, label};
 use peristalsis_study::{
-    Finding, Identity, Plan, PlannedRun, Specification, Store, StudyError, refine,
+    Finding, Identity, Plan, PlannedRun, Specification, State, Store, StudyError, refine,
 };
 use serde::Serialize;
 
 use super::error::ViewerError;
 use crate::within::{Sibling, Within};
 
-/// J/Jmax in time, in the folder of a run of a store.
-const SERIES: &str = "timeseries.parquet";
 /// Least time between two looks into a store.
 const EACH: Duration = Duration::from_secs(2);
-/// States of runs that may still give a row.
-const UNFINISHED: [&str; 3] = ["pending", "leased", "checkpointed"];
 
 /// A study: the rows of its finished runs and, where its design is known, the configuration behind each.
 #[derive(Debug)]
@@ -32,7 +28,7 @@ pub struct Study {
     plan: Option<Plan>,
     table: Table,
     /// Runs of the plan in each state.
-    counts: BTreeMap<&'static str, usize>,
+    counts: BTreeMap<State, usize>,
     /// All runs that were ever seen; the place is the number of the run for pages.
     runs: Vec<Identity>,
     numbers: HashMap<Identity, usize>,
@@ -64,7 +60,7 @@ pub(crate) struct Shown<'a> {
     columns: Vec<ShownColumn<'a>>,
     /// Number of the run of each row; null where it cannot be watched.
     runs: Vec<Option<usize>>,
-    counts: &'a BTreeMap<&'static str, usize>,
+    counts: &'a BTreeMap<State, usize>,
     /// Whether there may be more rows later.
     growing: bool,
 }
@@ -114,7 +110,7 @@ impl Study {
         let title = said("peristalsis.title").unwrap_or_default();
         let plan = design.map(|design| plan_of(design, &table)).transpose()?;
         let mut study = Self::new(name, title, table);
-        study.counts = BTreeMap::from([("done", study.table.rows())]);
+        study.counts = BTreeMap::from([(State::Done, study.table.rows())]);
         if let Some(plan) = plan {
             study.follow(plan);
         }
@@ -199,7 +195,6 @@ impl Study {
             Values::Real(values) => values.iter().any(|value| value.is_finite()),
             _ => true,
         };
-        let is_counted = |state: &&str| self.counts.contains_key(state);
         Shown {
             version: self.version,
             name: &self.name,
@@ -217,7 +212,7 @@ impl Study {
                 .collect(),
             runs: self.numbers_of_rows(),
             counts: &self.counts,
-            growing: self.store.is_some() && UNFINISHED.iter().any(is_counted),
+            growing: self.store.is_some() && self.counts.keys().any(|it| it.is_unfinished()),
         }
     }
 
@@ -240,7 +235,7 @@ impl Study {
         };
         let folder = self.store.as_ref().map(|store| store.run_folder(*identity));
         let file = |name: &str| Some(folder.as_ref()?.join(name));
-        let record = file(SERIES).and_then(|path| series(&path));
+        let record = file(files::TIMESERIES).and_then(|path| series(&path));
         let trajectory = file(TrajectoryFormat::Gsd.file_name());
         let identity = identity.to_string();
         Some(StudyRun {

@@ -1,6 +1,6 @@
 //! `peristalsis run`
 
-mod replicas;
+mod replicates;
 mod words;
 mod work;
 
@@ -33,8 +33,8 @@ pub(crate) const RUNS: &str = "runs";
 const SLOW_PACKING: u64 = 5_000;
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
-    if let Some(replicas) = replicas::replicas(arguments)? {
-        return replicas::run(arguments, replicas);
+    if let Some(replicates) = replicates::replicates(arguments)? {
+        return replicates::run(arguments, replicates);
     }
     let stop = Stop::watch()?;
     let (folder, mut run) = match &arguments.resume {
@@ -116,7 +116,7 @@ fn compute_with(arguments: &RunArguments, run: &mut Run, processors: usize) -> R
 pub(super) fn threads_of(asked: Threads, run: &Run, processors: usize) -> usize {
     let threads = asked.of(run, processors);
     if threads > 1 && !run.simulation().takes_threads() {
-        // Once, however many replicas there are.
+        // Once, however many replicates there are.
         static SAID: Once = Once::new();
         SAID.call_once(|| {
             say(

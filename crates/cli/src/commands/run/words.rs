@@ -1,7 +1,7 @@
 //! The results of a run, in words.
 
 use peristalsis_analysis::number::{known_error, with_error};
-use peristalsis_configuration::Units;
+use peristalsis_configuration::{HOUR, Units};
 use peristalsis_reproduce::report::plain_text;
 use peristalsis_run::{Discharge, Pumping, Run, Summary};
 
@@ -112,7 +112,7 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         let torque = torque.unwrap_or_default();
         flow.push_str(&format!(
             "\nin SI: {} kg/h, wall power {} W{torque}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
-            measured((3600.0 * mass_flow, 3600.0 * error)),
+            measured((HOUR * mass_flow, HOUR * error)),
             number(power),
             number(pressure),
             number(largest),
@@ -235,7 +235,7 @@ fn segregation(run: &Run, summary: &Summary) -> String {
 /// The discharge of an open tube.
 fn through(discharge: &Discharge, summary: &Summary) -> String {
     let flow = |rate| {
-        let per_hour = |units: &Units| 3600.0 * units.mass_flow();
+        let per_hour = |units: &Units| HOUR * units.mass_flow();
         told(summary, rate, per_hour, ["kg/h", "m/t"])
     };
     let rate = flow(discharge.rate);

@@ -6,7 +6,7 @@ use peristalsis_study::{Board, Working};
 
 use super::status::estimate;
 use crate::commands::{counted, say};
-use crate::progress::{Display, LastLine, seconds};
+use crate::progress::{Display, LastLine, found, seconds};
 
 /// Estimates that are shown on a terminal.
 const ESTIMATES_SHOWN: usize = 6;
@@ -104,15 +104,8 @@ pub(crate) fn overall(board: &Board, part: &str, left: Option<Duration>) -> Stri
 fn in_words(working: &Working) -> String {
     let mut text = working.point.clone();
     if let Some(progress) = working.progress {
-        text.push_str(&format!(
-            "  {:.0} %  t/T {:.1}  J/Jmax {:+.3}",
-            100.0 * progress.samples as f64 / progress.samples_total.max(1) as f64,
-            progress.period,
-            progress.flow_rate_ratio
-        ));
-        if let Some(time) = progress.transition_time {
-            text.push_str(&format!("  transition at t = {time:.1}"));
-        }
+        let part = 100.0 * progress.samples as f64 / progress.samples_total.max(1) as f64;
+        text.push_str(&format!("  {part:.0} %  {}", found(&progress)));
     } else {
         text.push_str("  packing");
     }

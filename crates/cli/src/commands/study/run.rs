@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use peristalsis_study::{Ending, Specification, Store, work_on};
+use peristalsis_study::{Ending, Specification, State, Store, work_on};
 
 use super::progress::StudyDisplay;
 use super::status::print_status;
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let again = format!("go on with: peristalsis study run {file} --store {place}");
     match ending {
         Ending::Complete => {
-            let failed = survey.counts().get("failed").copied().unwrap_or(0);
+            let failed = survey.counts().get(&State::Failed).copied().unwrap_or(0);
             if failed > 0 {
                 tell(format!(
                     "{} failed; see: peristalsis study why {place} RUN",

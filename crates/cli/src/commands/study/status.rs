@@ -80,7 +80,7 @@ fn report(store: &Store, survey: &Survey) -> Value {
 /// The status for a person.
 fn in_words(store: &Store, survey: &Survey) -> String {
     let mut text = format!("{} in {}\n", survey.study.name, store.path().display());
-    let in_state = |(state, number)| format!("{number} {state}");
+    let in_state = |(state, number): (State, usize)| format!("{number} {}", state.name());
     let counts: Vec<String> = survey.counts().into_iter().map(in_state).collect();
     let (runs, counts) = (counted(survey.plan.runs().len(), "run"), counts.join(", "));
     text.push_str(&format!("{runs}: {counts}\n"));

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use peristalsis_configuration::{Configuration, preset};
 use peristalsis_engine::{Instructions, processors};
+use peristalsis_run::files::CONFIGURATION;
 use peristalsis_run::{Run, RunFolder, TrajectoryFormat};
 use peristalsis_viewer::{Options, Recording, Viewer};
 
@@ -17,9 +18,6 @@ use crate::failure::Failure;
 use crate::sources::{self, known_presets};
 use crate::stop::Stop;
 use studies::Studies;
-
-/// Configuration in the folder of a run.
-const CONFIGURATION: &str = RunFolder::CONFIGURATION;
 
 pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;

@@ -3,18 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use peristalsis_formats::read_table;
-use peristalsis_reproduce::{Size, StudyFile};
-use peristalsis_study::StudyError;
+use peristalsis_reproduce::{STORES, Size, StudyFile};
+use peristalsis_run::files::CONFIGURATION;
+use peristalsis_study::{STUDY, StudyError};
 use peristalsis_viewer::{Figure, Study, ViewerError};
 
-use super::CONFIGURATION;
 use crate::commands::say;
 use crate::failure::Failure;
 
-/// The file by which a store is known.
-const STUDY: &str = "study.toml";
-/// Folder of the stores of a reproduction.
-const STORES: &str = "stores";
 /// Endings of tables.
 const TABLES: [&str; 2] = ["parquet", "csv"];
 

@@ -154,9 +154,9 @@ fn a_run_that_is_worked_on_is_not_gone_on_with_by_another_program() {
     assert!(names.into_iter().all(|name| !name.contains("lock")));
 }
 
-/// COMMAND-LINE, wanted: replicas that are complete are left as they are.
+/// COMMAND-LINE, wanted: replicates that are complete are left as they are.
 #[test]
-fn complete_replicas_that_are_gone_on_with_are_not_written_again() {
+fn complete_replicates_that_are_gone_on_with_are_not_written_again() {
     let place = Place::new();
     place.does("run SMALL --seeds 1..2 --out many");
     let before = place.inventory();

@@ -406,7 +406,7 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
     assert_same_run(&place, ["longer", "many/seed-3"]);
 }
 
-/// COMMAND-LINE, wanted: replicas that are stopped go on, those that had not begun included.
+/// COMMAND-LINE, wanted: replicates that are stopped go on, those that had not begun included.
 #[cfg(unix)]
 #[test]
 fn seeds_that_were_stopped_go_on_to_the_same_runs() {

@@ -136,7 +136,7 @@ pub(super) struct Leg {
     pub(super) of_rings: bool,
 }
 
-/// A shorter run, in rows, is added up by whoever has the sums: to hand them on costs more than to fetch its terms.
+/// A run of fewer rows is added up by the thread that has its sums: to hand them on costs more than to fetch its terms.
 const SHORT: usize = 32;
 
 impl Leg {
@@ -222,7 +222,7 @@ pub(super) struct MeanForce {
 }
 
 impl MeanForce {
-    /// What of it is still to be taken off each sphere of these rings, all of the wall; its power goes to the tally.
+    /// The mean force that each sphere of these rings, which are all of the wall, has still to lose; its power goes to the tally.
     pub(super) fn of(wall: &ElasticWall, rings: &[Rings], tally: &mut Tally) -> Record {
         let mut mean_force = Self::default();
         rings.iter().for_each(|rings| mean_force.add(wall, rings));

@@ -12,8 +12,8 @@ pub(crate) type Packed = [Record; 2];
 
 /// Histories of the pairs that touched at the last evaluation, one after the other.
 ///
-/// An evaluation writes each history somewhat before the place where it read it, into lines that are at hand: so it writes
-/// over none that is still to be read. When they have come to the start of their room, they are moved to its end.
+/// An evaluation writes each history somewhat before the place where it read it, into lines that are at hand: it never
+/// overwrites a history that is still to be read. When they have come to the start of their room, they are moved to its end.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Memory {
     /// Which pairs of the list they are, in order.

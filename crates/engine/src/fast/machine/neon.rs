@@ -45,7 +45,7 @@ impl Pair for Neon {
         unsafe { vst1q_f64(to.as_mut_ptr(), values) }
     }
 
-    // NEON's own are others where a number is none.
+    // NEON's own minimum and maximum treat NaN in another way.
     #[inline(always)]
     fn min(a: float64x2_t, b: float64x2_t) -> float64x2_t {
         Self::select(Self::less(a, b), a, b)

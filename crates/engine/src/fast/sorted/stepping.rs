@@ -17,8 +17,8 @@ use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
 
 impl Sorted {
-    /// The grains of `bodies`, smooth whatever their law, in the order that `sorting` holds; `None` where this kernel
-    /// does not serve them.
+    /// The grains of `bodies`, without friction whatever their law, in the order that `sorting` holds; `None` where this
+    /// kernel does not serve them.
     pub(crate) fn new(
         bodies: &Bodies,
         wall: &Wall,

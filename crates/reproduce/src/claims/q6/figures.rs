@@ -75,7 +75,7 @@ pub(super) fn balance(
             continue;
         };
         if let Some((row, profile)) =
-            first_kept(&one.rows, |row| results.product(row, Product::Profile))?
+            first_kept(&one.rows, |row| results.product(row, files::PROFILE))?
         {
             columns.push(column(friction, row.wave_speed(), &profile)?);
         }

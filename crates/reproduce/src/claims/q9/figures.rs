@@ -98,9 +98,7 @@ fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>> {
         } else {
             "largest Δ*p* pumped against"
         };
-        let kept = first_kept(&point.rows, |row| {
-            pump.results.product(row, Product::Profile)
-        })?;
+        let kept = first_kept(&point.rows, |row| pump.results.product(row, files::PROFILE))?;
         profiles.extend(kept.map(|(_, profile)| (name, profile)));
     }
     Ok(profiles)

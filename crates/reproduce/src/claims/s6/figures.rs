@@ -14,7 +14,7 @@ struct Curves {
 impl Curves {
     /// The profile of one run, the throat in the middle; `None` where it was not kept.
     fn of(name: String, study: &StudyResults, row: &Row<'_>) -> Result<Option<Self>> {
-        let Some(table) = study.product(row, Product::Profile)? else {
+        let Some(table) = study.product(row, files::PROFILE)? else {
             return Ok(None);
         };
         let radius = table.reals("radius")?;

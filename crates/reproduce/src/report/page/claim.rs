@@ -2,9 +2,9 @@
 
 use crate::{Examination, Quantity, ReportFigure, ReportTable, WallVerdict};
 use maud::{Markup, html};
-use peristalsis_analysis::number::{distance, interval, plain};
+use peristalsis_analysis::number::{counted, distance, interval, plain};
 
-use super::parts::{anchor, counts, number_of, study_anchor, verdict_badge};
+use super::parts::{anchor, counts, study_anchor, verdict_badge};
 use crate::report::Report;
 use crate::report::markup::{plain_text, rich};
 use crate::report::picture::embedded;
@@ -73,8 +73,8 @@ fn statistics(examination: &Examination) -> Markup {
             p.statistics { "No finished runs yet." }
         } @else {
             p.statistics {
-                (number_of(found.strain_rates, "strain rate")) " × " (number_of(found.widths, examination.finding.varied)) " × "
-                (number_of(found.replicates, "replicate")) ", " (number_of(found.runs, "run")) " in all: "
+                (counted(found.strain_rates, "strain rate")) " × " (counted(found.widths, examination.finding.varied)) " × "
+                (counted(found.replicates, "replicate")) ", " (counted(found.runs, "run")) " in all: "
                 @if examination.is_sufficient() { "enough for a verdict." }
                 @else {
                     "too few for a verdict, which takes " (needed.strain_rates) " × " (needed.widths) " × " (needed.replicates) "."

@@ -40,9 +40,3 @@ pub(crate) fn counts(study: &StudyOutcome) -> String {
     }
     text
 }
-
-/// A number with its noun.
-pub(crate) fn number_of(number: usize, noun: &str) -> String {
-    let ending = if number == 1 { "" } else { "s" };
-    format!("{number} {noun}{ending}")
-}

@@ -12,7 +12,7 @@ use crate::columns::Columns;
 use crate::error::Result;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::cohering::{pull_off, restitution};
-use crate::textbook::experiment::{Means, smooth};
+use crate::textbook::experiment::{Means, frictionless};
 use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("cohesion.md"));
@@ -48,7 +48,7 @@ const SPEEDS: [f64; 7] = [0.9, 0.98, 1.05, 1.2, 1.6, 2.5, 5.0];
 fn contact(normal: ViscoelasticHertz, cohesion: Cohesion) -> ContactModel {
     ContactModel {
         cohesion: Some(cohesion),
-        ..smooth(Normal::Hertz(normal))
+        ..frictionless(Normal::Hertz(normal))
     }
 }
 

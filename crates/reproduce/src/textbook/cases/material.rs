@@ -7,8 +7,8 @@ use peristalsis_physics::contact::{
     CundallStrack, DissipationForm, Normal, Sliding, ViscoelasticHertz,
 };
 
+use crate::textbook::experiment::frictionless;
 use crate::textbook::experiment::impact::Impact;
-use crate::textbook::experiment::smooth;
 
 /// An elastic material.
 #[derive(Clone, Copy, Debug)]
@@ -28,7 +28,10 @@ pub(super) const ALUMINIUM_OXIDE: Material = Material::new("aluminium oxide", 3.
 pub(super) fn aluminium_oxide_impact(dissipation_time: f64) -> Impact {
     let speed = 3.9 / ALUMINIUM_OXIDE.speed();
     let law = ALUMINIUM_OXIDE.against_rigid(dissipation_time);
-    Impact::on_plane(smooth(Normal::Hertz(law)), DVec3::new(-speed, 0.0, 0.0))
+    Impact::on_plane(
+        frictionless(Normal::Hertz(law)),
+        DVec3::new(-speed, 0.0, 0.0),
+    )
 }
 
 impl Material {

@@ -12,7 +12,7 @@ use crate::columns::Columns;
 use crate::error::Result;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::{Impact, Rebound};
-use crate::textbook::experiment::{Means, smooth};
+use crate::textbook::experiment::{Means, frictionless};
 use crate::textbook::reference::hertz::HertzImpact;
 use crate::{Check, Finding, Prose};
 
@@ -75,7 +75,7 @@ impl Experiment {
 
     fn impact(&self) -> Impact {
         let speed = self.diameter_and_speed()[1] / self.material.speed();
-        let contact = smooth(Normal::Hertz(self.law()));
+        let contact = frictionless(Normal::Hertz(self.law()));
         if self.on_plane {
             Impact::on_plane(contact, DVec3::new(-speed, 0.0, 0.0))
         } else {

@@ -69,10 +69,10 @@ impl Sweep<3> for Experiment {
 impl Experiment {
     fn new() -> Self {
         let time = dissipation_time(RESTITUTION, aluminium_oxide_impact);
-        let smooth = Trial::of(aluminium_oxide_impact(time));
+        let frictionless = Trial::of(aluminium_oxide_impact(time));
         Self {
-            speed: -smooth.impact.sphere.velocity.x,
-            head_on: smooth.with_friction(&ALUMINIUM_OXIDE, FRICTION),
+            speed: -frictionless.impact.sphere.velocity.x,
+            head_on: frictionless.with_friction(&ALUMINIUM_OXIDE, FRICTION),
         }
     }
 

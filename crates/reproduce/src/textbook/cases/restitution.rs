@@ -14,7 +14,7 @@ use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::Impact;
-use crate::textbook::experiment::{Means, smooth};
+use crate::textbook::experiment::{Means, frictionless};
 use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("restitution.md"));
@@ -34,7 +34,7 @@ pub(super) const fn spring(damping: f64) -> LinearSpringDashpot {
 
 /// Two grains under that law.
 fn linear(damping: f64) -> Impact {
-    Impact::of_twins(smooth(Normal::Linear(spring(damping))), 0.05)
+    Impact::of_twins(frictionless(Normal::Linear(spring(damping))), 0.05)
 }
 
 /// The damping of that law for a restitution: e = exp(-pi eta/sqrt(2 - eta^2)).

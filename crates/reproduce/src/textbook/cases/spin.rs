@@ -12,8 +12,8 @@ use crate::columns::Columns;
 use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
+use crate::textbook::experiment::frictionless;
 use crate::textbook::experiment::impact::{Impact, Rebound, Sphere};
-use crate::textbook::experiment::smooth;
 use crate::textbook::reference::impact::outcome;
 use crate::{Check, Finding, Prose};
 
@@ -52,7 +52,7 @@ impl Meets {
     }
 
     /// The impact without friction or spin.
-    fn smooth_impact(&self, dissipation_time: f64) -> Impact {
+    fn frictionless_impact(&self, dissipation_time: f64) -> Impact {
         let speed = SPEED / ALUMINIUM_ALLOY.speed();
         let partner = self.diameter.map(|diameter| Sphere {
             diameter,
@@ -65,7 +65,7 @@ impl Meets {
             Some(_) => ALUMINIUM_ALLOY.spheres(dissipation_time),
         };
         Impact {
-            contact: smooth(Normal::Hertz(law)),
+            contact: frictionless(Normal::Hertz(law)),
             sphere: Sphere::unit(DVec3::new(-speed, 0.0, 0.0), 0.0),
             partner,
         }
@@ -100,12 +100,12 @@ impl Sweep<2> for Experiment {
 
 impl Experiment {
     fn new(meets: &'static Meets) -> Self {
-        let time = dissipation_time(RESTITUTION, |time| meets.smooth_impact(time));
-        let smooth = Trial::of(meets.smooth_impact(time));
+        let time = dissipation_time(RESTITUTION, |time| meets.frictionless_impact(time));
+        let frictionless = Trial::of(meets.frictionless_impact(time));
         Self {
             meets,
-            speed: -smooth.impact.sphere.velocity.x,
-            without_spin: smooth.with_friction(&ALUMINIUM_ALLOY, FRICTION),
+            speed: -frictionless.impact.sphere.velocity.x,
+            without_spin: frictionless.with_friction(&ALUMINIUM_ALLOY, FRICTION),
         }
     }
 

@@ -12,8 +12,8 @@ use crate::columns::Columns;
 use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
+use crate::textbook::experiment::frictionless;
 use crate::textbook::experiment::impact::{Impact, Rebound, Sphere};
-use crate::textbook::experiment::smooth;
 use crate::textbook::reference::hertz::{HertzImpact, viscoelastic_series};
 use crate::{Check, Finding, Prose};
 
@@ -49,7 +49,7 @@ fn impact(form: DissipationForm, speed: f64) -> Impact {
         spin: 0.0,
     };
     Impact {
-        contact: smooth(Normal::Hertz(law(form))),
+        contact: frictionless(Normal::Hertz(law(form))),
         sphere: sphere(-0.5 * speed),
         partner: Some(sphere(0.5 * speed)),
     }

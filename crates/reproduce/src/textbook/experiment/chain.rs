@@ -6,7 +6,7 @@ use glam::DVec3;
 use peristalsis_engine::{Bodies, Simulation};
 use peristalsis_physics::contact::Normal;
 
-use super::{Means, far_away, smooth};
+use super::{Means, far_away, frictionless};
 use crate::error::Result;
 use crate::textbook::reference::ode::bisected;
 
@@ -55,7 +55,7 @@ impl Chain {
         });
         let bodies = Bodies::grains_at_rest(places.collect(), vec![1.0; self.grains]);
         let length = self.grains as f64 * spacing;
-        let parameters = means.parameters(smooth(self.normal), time_step, 0.3);
+        let parameters = means.parameters(frictionless(self.normal), time_step, 0.3);
         let mut simulation = Simulation::new(bodies, far_away(20.0, length), parameters);
         // Amplitude of the mode and its rate.
         let amplitude = |simulation: &Simulation| {

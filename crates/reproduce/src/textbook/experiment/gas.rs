@@ -8,7 +8,7 @@ use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-use super::{Means, far_away, smooth};
+use super::{Means, far_away, frictionless};
 use crate::error::Result;
 use crate::textbook::case::Circumstances;
 
@@ -106,7 +106,7 @@ impl Gas {
         [duration, samples]: [f64; 2],
         circumstances: Circumstances<'_>,
     ) -> Result<Vec<[f64; 2]>> {
-        let contact = smooth(Normal::Linear(self.law));
+        let contact = frictionless(Normal::Linear(self.law));
         let radius = self.radius();
         let wall = far_away(radius + 3.0, self.length);
         let parameters = means.parameters(contact, time_step, 0.3);

@@ -66,7 +66,7 @@ impl Means {
 }
 
 /// A contact without friction.
-pub(crate) fn smooth(normal: Normal) -> ContactModel {
+pub(crate) fn frictionless(normal: Normal) -> ContactModel {
     ContactModel::new(normal, None)
 }
 

@@ -218,7 +218,7 @@ impl Motion {
     }
 }
 
-/// Outcome of an impact whose tangential law has one coefficient of friction and no dashpot, or which is smooth.
+/// Outcome of an impact whose tangential law has one coefficient of friction and no dashpot, or which has no friction.
 ///
 /// Polar coordinates of the separation; while a contact sticks u follows the slip, and k_t |u| = mu f_n where it slides. It
 /// ends where the force of the Hertz law vanishes, or the overlap under the linear law.

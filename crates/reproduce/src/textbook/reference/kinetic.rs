@@ -74,8 +74,8 @@ mod tests {
     use rand_core::{Rng, SeedableRng};
 
     use super::*;
+    use crate::textbook::experiment::frictionless;
     use crate::textbook::experiment::impact::Impact;
-    use crate::textbook::experiment::smooth;
     use crate::textbook::reference::impact::outcome;
 
     fn gas(restitution: f64, density: f64, surface: f64) -> CoolingGas {
@@ -184,7 +184,7 @@ mod tests {
         let temperature = 1e-6;
         let loss = |normal: f64, tangential: f64| {
             let half = 0.5 * DVec3::new(-normal, tangential, 0.0);
-            let impact = Impact::between(smooth(Normal::Linear(law)), half, -half);
+            let impact = Impact::between(frictionless(Normal::Linear(law)), half, -half);
             let [one, other] = outcome(&impact).velocity;
             4.0 * half.length_squared() - (one - other).length_squared()
         };

@@ -9,7 +9,9 @@ use std::time::Instant;
 use peristalsis_analysis::mean_and_error;
 use peristalsis_analysis::number::known_error;
 use peristalsis_engine::processors;
-use peristalsis_run::{RunError, RunFolder, Status, Summary, Warning, next_folder, warnings};
+use peristalsis_run::{
+    RunError, RunFolder, Status, Summary, Warning, files, next_folder, warnings,
+};
 use serde_json::{Value, json};
 
 use super::words::measured;
@@ -22,34 +24,34 @@ use crate::progress::Display;
 use crate::sources::{configuration, name};
 use crate::stop::Stop;
 
-/// Name of the folder of a replica, before its seed.
+/// Name of the folder of a replicate, before its seed.
 const STEM: &str = "seed-";
 
-/// The folders of replicas.
-pub(super) struct Replicas {
-    /// Locked, so that no other program goes on with the replicas. The folder of each replica is locked when its turn comes.
+/// The folders of replicates.
+pub(super) struct Replicates {
+    /// Locked, so that no other program goes on with the replicates. The folder of each replicate is locked when its turn comes.
     folder: RunFolder,
     each: Vec<(u64, PathBuf)>,
     /// The warnings that were said already.
     said: Vec<Warning>,
 }
 
-/// A replica that was worked on: its seed, its folder, and what it came to.
+/// A replicate that was worked on: its seed, its folder, and what it came to.
 type Worked = (u64, PathBuf, Result<Outcome, Failure>);
 
-/// The replicas that are asked for or gone on with; `None` where the call is for one run.
-pub(super) fn replicas(arguments: &RunArguments) -> Result<Option<Replicas>, Failure> {
+/// The replicates that are asked for or gone on with; `None` where the call is for one run.
+pub(super) fn replicates(arguments: &RunArguments) -> Result<Option<Replicates>, Failure> {
     if let Some(seeds) = &arguments.seeds {
         return begin(arguments, seeds).map(Some);
     }
     let Some(folder) = &arguments.resume else {
         return Ok(None);
     };
-    if arguments.out.is_some() || folder.join(RunFolder::CONFIGURATION).exists() {
+    if arguments.out.is_some() || folder.join(files::CONFIGURATION).exists() {
         return Ok(None);
     }
     let below = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let replica = |path: PathBuf| {
+    let replicate = |path: PathBuf| {
         let seed = path
             .file_name()?
             .to_str()?
@@ -58,18 +60,18 @@ pub(super) fn replicas(arguments: &RunArguments) -> Result<Option<Replicas>, Fai
             .ok()?;
         Some((seed, path))
     };
-    let mut each: Vec<_> = below.filter_map(|entry| replica(entry.path())).collect();
+    let mut each: Vec<_> = below.filter_map(|entry| replicate(entry.path())).collect();
     each.sort_by_key(|(seed, _)| *seed);
     if each.is_empty() {
         return Ok(None);
     }
     let folder = RunFolder::named(folder).claim()?;
     let said = Vec::new();
-    Ok(Some(Replicas { folder, each, said }))
+    Ok(Some(Replicates { folder, each, said }))
 }
 
 /// Makes a folder for each seed; where one cannot be made, none is.
-fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
+fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicates, Failure> {
     let mut sources = arguments.configuration.clone();
     // The largest: where it can be a seed, all can.
     let largest = seeds.0.iter().max();
@@ -96,34 +98,34 @@ fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
     }
     let folder = RunFolder::named(&folder).claim();
     let folder = folder.map_err(|error| none_of(&each, error))?;
-    Ok(Replicas { folder, each, said })
+    Ok(Replicates { folder, each, said })
 }
 
-/// Takes the folders of new replicas away again, for an error.
+/// Takes the folders of new replicates away again, for an error.
 fn none_of(each: &[(u64, PathBuf)], error: RunError) -> Failure {
     let made = each.iter().map(|(_, path)| RunFolder::named(path));
     made.for_each(RunFolder::abandon);
     error.into()
 }
 
-/// Runs as many replicas at a time as there are processors for, and says what they came to.
-pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCode, Failure> {
+/// Runs as many replicates at a time as there are processors for, and says what they came to.
+pub(super) fn run(arguments: &RunArguments, replicates: Replicates) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
-    // Every replica has its folder, and can be gone on with from the first moment.
+    // Every replicate has its folder, and can be gone on with from the first moment.
     stop.keep_results();
-    let number = replicas.each.len();
+    let number = replicates.each.len();
     let each = match arguments.threads {
         Threads::Auto => 1,
         Threads::Number(threads) => usize::from(threads),
     };
     let at_once = (processors() / each).clamp(1, number);
-    // What the replicas leave free, the threads of each may take.
+    // What the replicates leave free, the threads of each may take.
     let free = processors() / at_once;
     let begin = Instant::now();
     let display = Mutex::new((Display::new(arguments.quiet, 1000), vec![0.0; number]));
-    let waiting: Mutex<VecDeque<_>> = Mutex::new(replicas.each.into_iter().enumerate().collect());
+    let waiting: Mutex<VecDeque<_>> = Mutex::new(replicates.each.into_iter().enumerate().collect());
     let worked: Mutex<Vec<Worked>> = Mutex::default();
-    // What has not begun when a signal comes begins when the replicas are gone on with.
+    // What has not begun when a signal comes begins when the replicates are gone on with.
     let next = || match stop.requested() {
         None => locked(&waiting).pop_front(),
         Some(_) => None,
@@ -138,7 +140,7 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
                 let words = || format!("{ended} of {}", counted(number, "seed"));
                 display.show([done as u64, 1000], begin.elapsed(), words);
             };
-            let outcome = replica(arguments, &path, free, &stop, &mut show);
+            let outcome = replicate(arguments, &path, free, &stop, &mut show);
             if matches!(&outcome, Err(Failure::Run(error)) if error.is_stop()) {
                 // It has not begun.
                 continue;
@@ -157,8 +159,8 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
     locked(&display).0.finish();
     let mut worked = worked.into_inner().unwrap_or_default();
     worked.sort_by_key(|(seed, ..)| *seed);
-    warn_besides(&[], &seen(&worked, &replicas.said));
-    conclude(arguments, replicas.folder.path(), worked, &stop)
+    warn_besides(&[], &seen(&worked, &replicates.said));
+    conclude(arguments, replicates.folder.path(), worked, &stop)
 }
 
 /// The content of a lock; a thread that panicked ends the program anyway.
@@ -168,8 +170,8 @@ fn locked<T>(guarded: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
         .unwrap_or_else(std::sync::PoisonError::into_inner)
 }
 
-/// Begins or goes on with one replica.
-fn replica(
+/// Begins or goes on with one replicate.
+fn replicate(
     arguments: &RunArguments,
     path: &Path,
     free: usize,
@@ -212,7 +214,7 @@ fn asks_for_files(arguments: &RunArguments) -> bool {
     arguments.csv || !arguments.frames.trajectory.is_empty()
 }
 
-/// The result of a replica, in a line.
+/// The result of a replicate, in a line.
 fn line(seed: u64, outcome: &Outcome) -> String {
     let summary = &outcome.summary;
     let (ratio, error) = summary.flow_rate_ratio;
@@ -235,7 +237,7 @@ fn line(seed: u64, outcome: &Outcome) -> String {
     format!("seed {seed}: {flow}; {transition}{ending}")
 }
 
-/// New warnings of the replicas: the first warning of each key, with its seed.
+/// New warnings of the replicates: the first warning of each key, with its seed.
 fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
     let mut seen: Vec<Warning> = Vec::new();
     for (seed, _, outcome) in worked {
@@ -249,7 +251,7 @@ fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
     seen
 }
 
-/// Prints what the replicas came to, and answers the exit code.
+/// Prints what the replicates came to, and answers the exit code.
 fn conclude(
     arguments: &RunArguments,
     folder: &Path,
@@ -276,7 +278,7 @@ fn conclude(
         false => None,
     };
     if arguments.json {
-        let of_replica = |(seed, folder, outcome): &Worked| {
+        let of_replicate = |(seed, folder, outcome): &Worked| {
             let mut all = match outcome {
                 Ok(outcome) => serde_json::to_value(&outcome.summary).unwrap_or_default(),
                 Err(error) => json!({ "status": "failed", "message": error.to_string() }),
@@ -287,7 +289,7 @@ fn conclude(
         };
         print_json(&json!({
             "folder": folder.to_string_lossy(),
-            "replicates": worked.iter().map(of_replica).collect::<Vec<_>>(),
+            "replicates": worked.iter().map(of_replicate).collect::<Vec<_>>(),
             "complete": complete.len(),
             "flow_rate_ratio": flow.as_ref().map(Scatter::report),
             "transitions": transitions,
