@@ -6,7 +6,7 @@ use crate::finding::Statistics;
 use crate::row::{Row, Start, escaped, grouped, mean, scattered};
 use crate::thresholds::{
     CLEAR, CONTINUED, ESCAPED_WITHIN, LEAST_ERROR_AGAINST_FORCE, LEAST_ERROR_AGAINST_WIDTH,
-    LEAST_FALL, LEAST_JUMP, SPLIT,
+    LEAST_FALL, LEAST_JUMP, SPAN, SPLIT,
 };
 
 /// What is varied along a branch.
@@ -338,6 +338,12 @@ pub(crate) struct Branches<'a> {
 }
 
 impl<'a> Branches<'a> {
+    /// Whether the flow reaches from unjammed to jammed.
+    pub(crate) fn spans(&self) -> bool {
+        let flows = || self.points().map(|point| point.flow.value);
+        flows().any(|flow| flow < SPAN.0) && flows().any(|flow| flow > SPAN.1)
+    }
+
     /// The stationary branches that some runs of one tube at one strain rate show.
     pub(crate) fn of(rows: &[Row<'a>], control: Control) -> Self {
         Self {

@@ -10,7 +10,7 @@ use crate::branch::{Branch, Control};
 use crate::finding::Statistics;
 use crate::near::Near;
 use crate::row::{Row, Start, behind, by_strain_rate, grouped, nearest_threshold};
-use crate::thresholds::{RESOLVED, STRAIGHT, WINDOW};
+use crate::thresholds::{HIGHER, RESOLVED, SHARP, STRAIGHT, WINDOW};
 use crate::walls::{AtRate, OnWall, Runs};
 
 /// The studies that [`OnWall::all`] reads.
@@ -107,12 +107,47 @@ impl Thresholds {
 /// The width at which half of some runs from rest have a transition at the threshold of their study; `None` where all of
 /// them have one, or none.
 pub(crate) fn crossing(rows: &[Row<'_>]) -> Option<FractionCrossing> {
+    crossing_of(rows, |row| row.transition())
+}
+
+fn crossing_of(
+    rows: &[Row<'_>],
+    transition: impl Fn(&Row<'_>) -> Transition,
+) -> Option<FractionCrossing> {
     let (width, jammed): (Vec<f64>, Vec<bool>) = rows
         .iter()
         .filter(|row| row.start() == Start::Rest)
-        .map(|row| (row.width(), row.transition().observed().is_some()))
+        .map(|row| (row.width(), transition(row).observed().is_some()))
         .unzip();
     fraction_crossing(&width, &jammed).ok()
+}
+
+/// [`crossing`], and the same at the threshold [`HIGHER`].
+pub(crate) struct Crossing {
+    /// w_c \[d\].
+    pub(crate) width: Uncertain,
+    /// That at the higher threshold; `None` where the runs pass it at every width, or at none.
+    pub(crate) higher: Option<Uncertain>,
+    /// 2 a \[d\].
+    diameter: f64,
+}
+
+impl Crossing {
+    pub(crate) fn of(rows: &[Row<'_>]) -> Option<Self> {
+        let higher = crossing_of(rows, |row| row.transition_at(HIGHER));
+        Some(Self {
+            width: crossing(rows)?.width,
+            higher: higher.map(|found| found.width),
+            diameter: 2.0 * rows.first()?.radius(),
+        })
+    }
+
+    /// Whether the threshold hardly matters: flows that creep through it, and are watched for a time, have no w_c.
+    pub(crate) fn is_sharp(&self) -> bool {
+        let apart = |higher: Uncertain| (higher.value - self.width.value).abs();
+        let is_near = |higher| apart(higher) <= SHARP * self.diameter;
+        self.higher.is_some_and(is_near)
+    }
 }
 
 /// Width and transition of every run at a threshold.

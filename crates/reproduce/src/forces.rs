@@ -8,7 +8,7 @@ use crate::exhibit::listed;
 use crate::finding::Statistics;
 use crate::row::{Row, Start, ascending, by_strain_rate, escaped, grouped};
 use crate::thresholds::{
-    CLEAR, FINEST, FOR_A_VERDICT_ON_FORCES, LEAST_JUMP_AGAINST_FORCE, MOST_ESCAPED, SPAN,
+    CLEAR, FINEST, FOR_A_VERDICT_ON_FORCES, LEAST_JUMP_AGAINST_FORCE, MOST_ESCAPED,
     STATIONARY_PERIODS,
 };
 
@@ -176,12 +176,6 @@ impl<'a> ForceLine<'a> {
             .fold(0.0, f64::max)
     }
 
-    /// Whether it reaches from unjammed to jammed flow.
-    fn spans(&self) -> bool {
-        let flows = || self.flow.points().map(|point| point.flow.value);
-        flows().any(|flow| flow < SPAN.0) && flows().any(|flow| flow > SPAN.1)
-    }
-
     /// Whether it jumps.
     pub(crate) fn kind(&self) -> Kind {
         let least = LEAST_JUMP_AGAINST_FORCE;
@@ -194,7 +188,7 @@ impl<'a> ForceLine<'a> {
             {
                 Kind::Jump
             }
-            Some(height) if height.value + 2.0 * height.error < least && self.spans() => {
+            Some(height) if height.value + 2.0 * height.error < least && self.flow.spans() => {
                 Kind::Smooth
             }
             _ => Kind::Unclear,

@@ -90,6 +90,10 @@ pub(crate) const SIGNED_BY: f64 = 2.0;
 pub(crate) const UNJAMMED: f64 = 0.2;
 /// J/Jmax from which on a flow is fast: midway between the two flows.
 pub(crate) const FAST: f64 = 0.5;
+/// J/Jmax at which a critical width is looked at once more: jammed flow is faster as a rule.
+pub(crate) const HIGHER: f64 = 0.7;
+/// Parts of the tube's diameter by which the critical width may change from the one threshold to the other.
+pub(crate) const SHARP: f64 = 0.01;
 /// J/Jmax at which a sweep of the force passes from one flow to the other: midway between them.
 pub(crate) const PASSED: f64 = 0.5;
 

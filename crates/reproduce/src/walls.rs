@@ -1,5 +1,7 @@
 //! The walls that are examined, and what the studies of each show.
 
+use std::collections::BTreeSet;
+
 use crate::branch::{Branch, Branches, Control, leak};
 use crate::critical::{Thresholds, crossing};
 use crate::error::Result;
@@ -137,7 +139,9 @@ impl<'a> Runs<'a> {
             let rows = evidence.study(study)?.rows().into_iter();
             times.extend(rows.filter(|row| wall.is_of(row)));
         }
-        times.retain(|row| row.start() == Start::Rest);
+        // A run that two studies share counts once.
+        let mut seen = BTreeSet::new();
+        times.retain(|row| row.start() == Start::Rest && seen.insert(row.identity()));
         let of_branches = branches.len();
         let rows = branches.into_iter().chain(times).enumerate();
         // Each run with whether it is of a branch.

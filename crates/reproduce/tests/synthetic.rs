@@ -555,6 +555,10 @@ fn runs_near_the_critical_width_are_joined() {
         .unwrap();
     let exponent = |evidence| value(&examine("F2", evidence), "wall 24 × 26");
     assert_eq!(exponent(&whole), exponent(&parted));
+    // A run that both have counts once.
+    let shared = rows::evidence(&[("divergence-fine", &all), ("near-fine", &all)]);
+    let runs = |evidence| examine("F2", evidence).statistics.runs;
+    assert_eq!(runs(&whole), runs(&shared));
 }
 
 /// Q1 to Q5 have an answer with enough runs, and none with two of each.

@@ -142,14 +142,16 @@ impl<'a> Outcome<'a> {
             .reduce(f64::min)
     }
 
-    /// Whether each of S2 to S5 holds.
+    /// Whether each of S2 to S5 holds. A flow that does not span the rise may rise beyond the forces that were tried.
     fn holds(&self) -> [Option<bool>; 4] {
-        let rises = |rise: Step| rise.height.value > LEAST_JUMP_AGAINST_FORCE;
-        let flows_back =
-            |point: &Point<'_>| point.flow.value + SIGNED_BY * point.flow.error < -LEAST_BACK_FLOW;
+        let rises = |rise: Step| {
+            let is_high = rise.height.value > LEAST_JUMP_AGAINST_FORCE;
+            (is_high || self.flow.spans()).then_some(is_high)
+        };
+        let flows_back = |point: &Point<'_>| point.flow.interval_95.upper < -LEAST_BACK_FLOW;
         [
             self.gives_way().map(|(gave, all)| gave > 0 && gave < all),
-            self.rise().map(rises),
+            self.rise().and_then(rises),
             self.flow.lowest().map(flows_back),
             self.frictionless().map(|flow| flow > -LEAST_BACK_FLOW),
         ]

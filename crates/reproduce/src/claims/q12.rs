@@ -37,8 +37,13 @@ fn is_known(study: &str) -> bool {
 
 pub(super) const CLAIM: Claim = Claim::new("Q12", PROSE, STUDIES, examine);
 
+/// What makes a tube: whether its spheres are staggered, spheres a ring and rings a wave, then a, lambda, strain rate, k and
+/// eta.
+type Key = (bool, [i64; 2], [f64; 5]);
+
 /// A tube with its grains, in units of m and d, and what was measured in it.
 struct Tube {
+    key: Key,
     radius: f64,
     wavelength: f64,
     wave_speed: f64,
@@ -52,31 +57,27 @@ struct Tube {
 }
 
 impl Tube {
-    /// The tubes of a study that hold their grains at the critical width, where this is known.
+    /// The tubes of a study that hold their grains at a [sharp](Crossing::is_sharp) critical width.
     fn all_of(rows: Vec<Row<'_>>) -> Vec<Self> {
-        let tube = |row: &Row<'_>| {
-            let Lattice {
-                spheres_per_ring,
-                rings_per_wave,
-            } = row.lattice();
-            let lattice = [spheres_per_ring, rings_per_wave].map(|number| number as f64);
-            let shape = [row.radius(), row.wavelength(), row.strain_rate()];
-            let is_staggered = arrangement(row) == STAGGERED;
-            (
-                is_staggered,
-                lattice,
-                shape,
-                [row.stiffness(), row.damping()],
-            )
+        let tube = |row: &Row<'_>| -> Key {
+            let lattice = row.lattice();
+            let lattice = [lattice.spheres_per_ring, lattice.rings_per_wave];
+            let (radius, wavelength, rate) = (row.radius(), row.wavelength(), row.strain_rate());
+            let numbers = [radius, wavelength, rate, row.stiffness(), row.damping()];
+            (arrangement(row) == STAGGERED, lattice, numbers)
         };
         let groups = grouped(rows, tube).into_iter();
-        groups.filter_map(|(_, rows)| Self::of(&rows)).collect()
+        let tubes = groups.filter_map(|(key, rows)| Self::of(key, &rows));
+        tubes.collect()
     }
 
-    fn of(rows: &[Row<'_>]) -> Option<Self> {
-        let critical = crossing(rows)?.width;
+    fn of(key: Key, rows: &[Row<'_>]) -> Option<Self> {
+        let crossing = Crossing::of(rows)?;
+        let critical = crossing.width;
         let first = &rows[0];
-        (leak(rows, Some(critical.value)) <= MOST_ESCAPED).then(|| Self {
+        let is_tight = leak(rows, Some(critical.value)) <= MOST_ESCAPED;
+        (is_tight && crossing.is_sharp()).then(|| Self {
+            key,
             radius: first.radius(),
             wavelength: first.wavelength(),
             wave_speed: first.wave_speed(),
@@ -191,8 +192,9 @@ impl Prediction {
         let Some((least, most)) = ends(ratios.iter().copied()) else {
             return cell_of(ratios.first(), |only| number(*only, 2));
         };
-        let [median, least, most] =
-            [ratios[ratios.len() / 2], least, most].map(|ratio| number(ratio, 2));
+        let half = ratios.len() / 2;
+        let median = 0.5 * (ratios[(ratios.len() - 1) / 2] + ratios[half]);
+        let [median, least, most] = [median, least, most].map(|ratio| number(ratio, 2));
         format!("{median} ({least}–{most})")
     }
 
@@ -244,7 +246,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     groups.retain(|group| !group.tubes.is_empty());
     let of = |is_of: fn(&str) -> bool| -> Vec<&Tube> {
         let those = groups.iter().filter(|group| is_of(group.study));
-        those.flat_map(|group| &group.tubes).collect()
+        let mut tubes: Vec<&Tube> = Vec::new();
+        // A tube of several studies counts once.
+        for tube in those.flat_map(|group| &group.tubes) {
+            if tubes.iter().all(|known| known.key != tube.key) {
+                tubes.push(tube);
+            }
+        }
+        tubes
     };
     let (known, tests) = (of(is_known), of(|study| study == TEST));
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());

@@ -67,13 +67,37 @@ struct Critical {
     wave_speed: f64,
     strain_rate: f64,
     radius: f64,
-    width: Uncertain,
+    crossing: Crossing,
+    /// Fraction of the grains outside the tube at widths next to it.
+    escaped: f64,
 }
 
 impl Critical {
+    fn of(value: f64, rows: &[Row<'_>]) -> Option<Self> {
+        let crossing = Crossing::of(rows)?;
+        Some(Self {
+            value,
+            strain_rate: rows[0].strain_rate(),
+            wave_speed: rows[0].wave_speed(),
+            radius: rows[0].radius(),
+            escaped: leak(rows, Some(crossing.width.value)),
+            crossing,
+        })
+    }
+
+    /// A width over 2 a.
+    fn part(&self, width: Uncertain) -> Uncertain {
+        width.scaled(0.5 / self.radius)
+    }
+
     /// w_c/(2 a).
-    fn fraction(&self) -> f64 {
-        self.width.value / (2.0 * self.radius)
+    fn fraction(&self) -> Uncertain {
+        self.part(self.crossing.width)
+    }
+
+    /// Whether it counts: the tube holds its grains, and the threshold hardly matters.
+    fn counts(&self) -> bool {
+        self.escaped <= MOST_ESCAPED && self.crossing.is_sharp()
     }
 
     fn row(&self, varied: &Varied) -> Vec<String> {
@@ -82,15 +106,18 @@ impl Critical {
             number(self.value, 3),
             number(self.wave_speed, 2),
             number(self.strain_rate, 4),
-            self.width.to_string(),
-            number(self.fraction(), 3),
+            self.crossing.width.to_string(),
+            number(self.fraction().value, 3),
+            cell_of(self.crossing.higher, |width| {
+                number(self.part(width).value, 3)
+            }),
+            number(self.escaped, 3),
         ]
     }
 
     /// The parameter and w_c/(2 a), with half of the 95 per cent interval as bars.
     fn point(&self) -> (f64, Uncertain) {
-        let half = self.width.interval_95.length() / (4.0 * self.radius);
-        (self.value, Uncertain::normal(self.fraction(), half))
+        (self.value, bar(&self.fraction()))
     }
 }
 
@@ -100,15 +127,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for varied in &VARIED {
         let rows = evidence.study(varied.name)?.rows();
         let mut of = Vec::new();
-        for ((value, rate), rows) in grouped(rows, |row| ((varied.value)(row), row.strain_rate())) {
+        for ((value, _), rows) in grouped(rows, |row| ((varied.value)(row), row.strain_rate())) {
             all.push(behind(&rows, Row::width));
-            of.extend(crossing(&rows).map(|crossing| Critical {
-                value,
-                strain_rate: rate,
-                wave_speed: rows[0].wave_speed(),
-                radius: rows[0].radius(),
-                width: crossing.width,
-            }));
+            of.extend(Critical::of(value, &rows));
         }
         if !of.is_empty() {
             found.push((varied, of));
@@ -117,14 +138,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if found.is_empty() {
         return Ok(PROSE.nothing(Statistics::default(), &Q3_NEEDED));
     }
-    let spans: Vec<String> = found
-        .iter()
-        .filter(|(_, of)| of.len() > 1)
-        .map(|(varied, of)| {
-            let (least, largest) = ends(of.iter().map(Critical::fraction)).unwrap_or_default();
-            format!("{} with {}", number(largest - least, 3), varied.name)
+    let spans = found.iter().flat_map(|(varied, of)| {
+        let series = varied.series.iter();
+        series.filter_map(|(name, belongs)| {
+            let of = of.iter().filter(|one| belongs(one) && one.counts());
+            let at = if name.is_empty() { "" } else { " at " };
+            Some(format!("{} with {}{at}{name}", span(of)?, varied.name))
         })
-        .collect();
+    });
+    let spans: Vec<String> = spans.collect();
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());
     let summary = PROSE.text("summary", values!(spans = spans.join(", ")));
     let mut draft = Draft::of(PROSE);
@@ -136,7 +158,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = each().map(|(varied, one)| one.row(varied));
     draft.table("critical widths", &[], rows);
     for (varied, one) in each() {
-        let (varied, width) = (varied.name, one.width);
+        let (varied, width) = (varied.name, one.crossing.width);
         let (value, speed) = (number(one.value, 3), number(one.wave_speed, 2));
         draft.quantity("critical width", values!(varied, value, speed), width);
     }
@@ -144,6 +166,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let chart = grid(2, panels);
     draft.chart("softness-or-geometry", &[], chart)?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q3_NEEDED))
+}
+
+/// The largest less the smallest w_c/(2 a); `None` of fewer than two.
+fn span<'a>(of: impl Iterator<Item = &'a Critical>) -> Option<Uncertain> {
+    let mut fractions: Vec<Uncertain> = of.map(Critical::fraction).collect();
+    fractions.sort_by(|one, other| one.value.total_cmp(&other.value));
+    let [least, .., largest] = &*fractions else {
+        return None;
+    };
+    Some(difference(largest, least))
 }
 
 fn against(varied: &Varied, found: &[Critical]) -> ChartPanel {

@@ -50,13 +50,12 @@ impl Sampled<'_> {
         Some(mean(&self.rows, column)?.scaled(1e3))
     }
 
-    /// The rest of a force, in thousandths: that of the rear, or of the belly.
+    /// The rest of a force, in thousandths: that of the rear, or of the belly. Its error is from the scatter of the runs:
+    /// whole and part fluctuate together.
     fn rest(&self, whole: &str, part: &str) -> Option<Uncertain> {
-        let rest = mean_of(&self.rows, |row| {
-            let (whole, part) = (row.number_and_error(whole), row.number_and_error(part));
-            (whole.0 - part.0, whole.1.hypot(part.1))
-        });
-        Some(rest?.scaled(1e3))
+        let rest = |row: &Row<'_>| row.number(whole) - row.number(part);
+        let rest = scattered(&self.rows, rest);
+        rest.value.is_finite().then(|| rest.scaled(1e3))
     }
 
     /// A velocity over the speed of the wave.

@@ -14,7 +14,8 @@ pub(super) const CLAIM: Claim = Claim::new("Q8", PROSE, STUDIES, examine);
 /// Part of the runs, at their end, over which the study takes its means.
 const LATE: f64 = 0.5;
 
-/// The stationary flow against the force in a tube of one length.
+/// The stationary flow against the force in a tube of one length: runs that drift are left out, of the flow and of its
+/// fluctuation.
 struct Ladder<'a> {
     rate: f64,
     waves: f64,
@@ -30,7 +31,7 @@ impl<'a> Ladder<'a> {
             .map(|((rate, waves), rows)| Self {
                 rate,
                 waves,
-                branch: Branch::of_all(&rows, Control::Force),
+                branch: Branch::with(rows.iter().copied(), Control::Force, stationary),
                 rows,
             })
             .collect()
@@ -41,12 +42,9 @@ impl<'a> Ladder<'a> {
         self.branch.largest_step(|height| height)
     }
 
-    /// Variance of the period averages of J/Jmax times the waves: that of a wave if waves fluctuate by themselves. Of runs
-    /// that no longer drift: what drifts does not fluctuate.
+    /// Variance of the period averages of J/Jmax times the waves: that of a wave if waves fluctuate by themselves.
     fn fluctuation(&self, point: &Point<'_>) -> Option<Uncertain> {
-        let steady = point.rows.iter().filter(|row| row.is_stationary());
-        let steady: Vec<Row<'_>> = steady.copied().collect();
-        mean_of(&steady, |row| {
+        mean_of(&point.rows, |row| {
             let variance = row.number("flow_rate_ratio_variance");
             // As of normal numbers, one for each late period.
             let periods = row.number("periods") * LATE - 1.0;
@@ -55,11 +53,16 @@ impl<'a> Ladder<'a> {
         })
     }
 
-    fn largest_fluctuation(&self) -> Option<(f64, Uncertain)> {
-        let points = self.branch.points.iter();
-        points
-            .filter_map(|point| Some((point.control, self.fluctuation(point)?)))
-            .max_by(|one, other| one.1.value.total_cmp(&other.1.value))
+    /// The fluctuation at a force.
+    fn fluctuation_at(&self, force: f64) -> Option<Uncertain> {
+        self.fluctuation(self.branch.at(force)?)
+    }
+
+    /// The forces at which runs still drift, in thousandths.
+    fn drifting(&self) -> Vec<String> {
+        let forces = grouped(self.rows.iter(), |row| row.force()).into_iter();
+        let drifting = forces.filter(|(force, _)| self.branch.at(*force).is_none());
+        drifting.map(|(force, _)| number(1e3 * force, 2)).collect()
     }
 
     /// The largest rise in words.
@@ -70,8 +73,9 @@ impl<'a> Ladder<'a> {
         Some(format!("{}{doubt} in {} waves", rise.height, self.waves))
     }
 
-    fn row(&self) -> Vec<String> {
-        let (rise, fluctuation) = (self.rise(), self.largest_fluctuation());
+    fn row(&self, force: Option<f64>) -> Vec<String> {
+        let rise = self.rise();
+        let fluctuation = force.and_then(|force| self.fluctuation_at(force));
         let thousandths = |value: f64| number(1e3 * value, 2);
         vec![
             thousandths(self.rate),
@@ -79,8 +83,8 @@ impl<'a> Ladder<'a> {
             self.branch.points.len().to_string(),
             cell(rise.map(|rise| rise.height)),
             cell_of(rise, |rise| thousandths(rise.place().value)),
-            cell(fluctuation.map(|(_, mean)| mean)),
-            cell_of(fluctuation, |(force, _)| thousandths(force)),
+            cell(fluctuation),
+            cell_of(force, thousandths),
         ]
     }
 }
@@ -94,6 +98,8 @@ struct Loop {
     down: Option<Uncertain>,
     /// Sweeps up and down that ended before they passed.
     censored: [usize; 2],
+    /// Largest part of the grains outside.
+    escaped: f64,
 }
 
 impl Loop {
@@ -111,6 +117,11 @@ impl Loop {
                 periods,
                 up: mean_of(&up, passed),
                 down: mean_of(down, passed),
+                escaped: up
+                    .iter()
+                    .chain(down)
+                    .map(Row::escaped_fraction)
+                    .fold(0.0, f64::max),
                 censored: [&up, down].map(|rows| {
                     let censored = |row: &&Row<'_>| !passed(row).0.is_finite();
                     rows.iter().filter(censored).count()
@@ -139,6 +150,7 @@ impl Loop {
             force(self.down),
             force(self.width()),
             format!("{}, {}", self.censored[0], self.censored[1]),
+            number(self.escaped, 3),
         ]
     }
 }
@@ -190,6 +202,18 @@ impl<'b, 'a> AtRate<'b, 'a> {
         self.ladders.len() >= LEAST_LENGTHS && closed.count() >= LEAST_LENGTHS
     }
 
+    /// The force at which tubes of all lengths are steady and fluctuate most together.
+    fn fluctuating_force(&self) -> Option<f64> {
+        let first = self.ladders.first()?.branch.points.iter();
+        let sum = |force: f64| -> Option<f64> {
+            let each = self.ladders.iter();
+            each.map(|one| Some(one.fluctuation_at(force)?.value)).sum()
+        };
+        let known = first.filter_map(|point| Some((point.control, sum(point.control)?)));
+        let largest = known.max_by(|one, other| one.1.total_cmp(&other.1));
+        largest.map(|(force, _)| force)
+    }
+
     /// What it shows.
     fn words(&self) -> String {
         let rises: Vec<String> = self.ladders.iter().filter_map(|one| one.words()).collect();
@@ -209,8 +233,8 @@ impl<'b, 'a> AtRate<'b, 'a> {
     fn add_quantities(&self, draft: &mut Draft) {
         let rate = &self.rate;
         let ladders = self.ladders.iter();
-        let fluctuations =
-            ladders.filter_map(|one| Some((one.waves, one.largest_fluctuation()?.1)));
+        let force = self.fluctuating_force().unwrap_or(f64::NAN);
+        let fluctuations = ladders.filter_map(|one| Some((one.waves, one.fluctuation_at(force)?)));
         let of_size = exponent(fluctuations);
         draft.quantity("exponent of fluctuation", values!(rate), of_size);
         let loops = self.loops.iter();
@@ -244,7 +268,21 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         at.add_quantities(&mut draft);
     }
     if !ladders.is_empty() {
-        draft.table("ladders", &[], ladders.iter().map(Ladder::row));
+        let of_rate = |at: &AtRate<'_, '_>| {
+            let force = at.fluctuating_force();
+            at.ladders
+                .iter()
+                .map(move |one| one.row(force))
+                .collect::<Vec<_>>()
+        };
+        draft.table("ladders", &[], rates.iter().flat_map(of_rate));
+        for one in &ladders {
+            let (forces, waves) = (one.drifting(), one.waves);
+            if !forces.is_empty() {
+                let (rate, forces) = (number(1e3 * one.rate, 2), forces.join(", "));
+                draft.weakness("drifting", values!(rate, waves, forces));
+            }
+        }
     }
     if !loops.is_empty() {
         draft.table("loops", &[], loops.iter().map(Loop::row));

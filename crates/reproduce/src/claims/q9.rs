@@ -2,6 +2,7 @@
 
 mod figures;
 
+use peristalsis_figures::Units;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
 use super::prelude::*;
@@ -18,26 +19,20 @@ const WAVEFORMS: [&str; 3] = ["sine", "bolus", "roller"];
 struct Model {
     study: &'static str,
     name: &'static str,
-    /// The unit of pressure, plain and in markup, and what makes a number of a pressure.
-    unit: &'static str,
-    pressure_unit: &'static str,
-    per_unit: &'static str,
+    /// Those of its pressures.
+    units: Units,
 }
 
 const MODELS: [Model; 2] = [
     Model {
         study: "pumping-frictionless",
         name: "frictionless grains, prescribed wall",
-        unit: "k/d",
-        pressure_unit: "*k*/*d*",
-        per_unit: " *d*/*k*",
+        units: Units::Linear,
     },
     Model {
         study: "pumping-frictional",
         name: "frictional grains, elastic wall",
-        unit: "Y",
-        pressure_unit: "*Y*",
-        per_unit: "/*Y*",
+        units: Units::Hertz,
     },
 ];
 
@@ -56,9 +51,28 @@ struct Characteristic<'a> {
     branch: Branch<'a>,
 }
 
-/// Power of the flow against the pressure over the power of the wall.
+/// Power of the flow against the pressure over the power of the wall, both means over the runs: eta = <P>/<W>, its error
+/// from the scatter of (P - eta W)/<W>.
 fn efficiency(point: &Point<'_>) -> Option<Uncertain> {
-    point.mean("pumping_efficiency")
+    let of = |column| scattered(&point.rows, |row| row.number(column)).value;
+    let (wall, useful) = (of("wall_power"), of("useful_power"));
+    let ratio = useful / wall;
+    let rest =
+        |row: &Row<'_>| (row.number("useful_power") - ratio * row.number("wall_power")) / wall;
+    let scatter = scattered(&point.rows, rest).error;
+    let degrees = point.rows.len().saturating_sub(1);
+    ratio
+        .is_finite()
+        .then(|| Uncertain::student(ratio, scatter, degrees))
+}
+
+/// Largest part of the grains outside in any of these runs.
+fn outside(point: &Point<'_>) -> f64 {
+    point
+        .rows
+        .iter()
+        .map(Row::escaped_fraction)
+        .fold(0.0, f64::max)
 }
 
 /// Time that a grain takes through one wavelength, in periods of the wave.
@@ -97,11 +111,29 @@ impl<'a> Characteristic<'a> {
         &self.branch.points[0]
     }
 
-    /// The pressure at which the flow turns round, as a bracket of two neighbouring pressures.
-    fn stop(&self) -> Option<Uncertain> {
+    /// The two neighbouring pressures between which the flow turns round.
+    fn turn(&self) -> Option<Step> {
         let mut steps = self.branch.steps();
-        let turns = steps.find(|step| step.flows[0] > 0.0 && step.flows[1] <= 0.0)?;
-        Some(turns.place())
+        steps.find(|step| step.flows[0] > 0.0 && step.flows[1] <= 0.0)
+    }
+
+    /// The pressure at which the flow turns round.
+    fn stop(&self) -> Option<Uncertain> {
+        Some(self.turn()?.place())
+    }
+
+    /// Part of the grains outside at the pressure that turned the flow round, where too many are.
+    fn leak(&self) -> Option<f64> {
+        let beyond = self.branch.at(self.turn()?.controls[1])?;
+        Some(outside(beyond)).filter(|part| *part > MOST_ESCAPED)
+    }
+
+    /// Whether the flow at the largest efficiency still drifts in most runs.
+    fn best_drifts(&self) -> bool {
+        self.best().is_some_and(|(point, _)| {
+            let steady = point.rows.iter().filter(|row| row.is_stationary());
+            2 * steady.count() < point.rows.len()
+        })
     }
 
     /// The point of the largest efficiency among those with flow along the wave.
@@ -193,7 +225,7 @@ impl<'a> Pump<'a> {
     /// What it does, in a sentence.
     fn words(&self) -> Option<String> {
         let (point, efficiency) = self.sine().best()?;
-        let unit = self.model.pressure_unit;
+        let unit = self.model.units.pressure();
         let stop = match self.sine().stop() {
             None => PROSE.text("no stop", &[]),
             Some(stop) => PROSE.text("stop", values!(stop, unit)),
@@ -235,7 +267,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let statistics = Statistics::weakest_at_one_rate(pumps.iter().map(Pump::statistics));
     let mut draft = Draft::of(PROSE).varying("back pressure");
     for pump in &pumps {
-        let (sine, Model { name, unit, .. }) = (pump.sine(), pump.model);
+        let (sine, name) = (pump.sine(), pump.model.name);
+        let unit = pump.model.units.pressure().replace('*', "");
         let best = sine.best().map(|(_, efficiency)| efficiency);
         draft.quantity("efficiency", values!(model = name), best);
         draft.quantity("stop", values!(model = name, unit), sine.stop());
@@ -248,6 +281,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .collect();
     if !at_the_edge.is_empty() {
         draft.weakness("at the edge", values!(pumps = at_the_edge.join("; ")));
+    }
+    for pump in &pumps {
+        let name = pump.model.name;
+        if pump.sine().best_drifts() {
+            draft.weakness("drifts", values!(name));
+        }
+        if let Some(part) = pump.sine().leak() {
+            draft.weakness("leaks", values!(name, part = number(part, 2)));
+        }
     }
     draft.chart("pump-characteristic", &[], figures::characteristic(&pumps))?;
     figures::on_the_wall(&mut draft, &pumps)?;

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "not every test needs all of it")]
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use peristalsis_formats::{Table, Values};
 use peristalsis_reproduce::{CLAIMS, Evidence, Finding, STUDIES, Verdict};
@@ -32,9 +33,13 @@ impl Rows {
 
     /// Adds a run.
     pub(crate) fn add(&mut self, texts: &[(&str, &str)], numbers: &[(&str, f64)]) {
+        // No two runs that are added are the same.
+        static RUNS: AtomicUsize = AtomicUsize::new(0);
+        let identity = format!("{:032x}", RUNS.fetch_add(1, Ordering::Relaxed));
         let texts = texts
             .iter()
             .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()))
+            .chain([("identity".to_owned(), identity)])
             .collect();
         let numbers = self
             .common

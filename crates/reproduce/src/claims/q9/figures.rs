@@ -43,7 +43,7 @@ fn efficiency_panel(pump: &Pump<'_>) -> ChartPanel {
 }
 
 fn dispersion_panel(pump: &Pump<'_>) -> ChartPanel {
-    let x_label = format!("pressure rise, Δ*p*{}", pump.model.per_unit);
+    let x_label = format!("pressure rise, Δ*p*{}", pump.model.units.per_pressure());
     let panel = ChartPanel::new(&x_label, "dispersion, *D*/*cλ*").y_scale(Scale::Logarithmic);
     with_series(panel, pump, |point| {
         dispersion(point).filter(|dispersion| dispersion.value > 0.0 && point.flow.value > 0.0)
@@ -119,7 +119,7 @@ pub(super) fn on_the_wall(draft: &mut Draft, pumps: &[Pump<'_>]) -> Result<()> {
     let mut panels = Vec::new();
     for column in ["radius", "wall_pressure", "wall_shear"] {
         for (pump, profiles) in &columns {
-            let unit = pump.model.per_unit;
+            let unit = pump.model.units.per_pressure();
             let panel = match column {
                 "radius" => ChartPanel::new("", "radius, *R*/*d*").title(pump.model.name),
                 "wall_pressure" => ChartPanel::new("", &format!("pressure, *p*{unit}")),

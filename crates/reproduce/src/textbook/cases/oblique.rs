@@ -3,6 +3,9 @@
 use glam::DVec3;
 use peristalsis_figures::Width;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Tint};
+use peristalsis_physics::contact::{
+    ContactModel, CundallStrack, LinearSpringDashpot, Normal, Sliding,
+};
 
 use super::errors::error_chart;
 use super::material::{ALUMINIUM_OXIDE, aluminium_oxide_impact};
@@ -12,7 +15,8 @@ use crate::columns::Columns;
 use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
-use crate::textbook::experiment::impact::Rebound;
+use crate::textbook::experiment::Means;
+use crate::textbook::experiment::impact::{Impact, Rebound};
 use crate::textbook::reference::impact::outcome;
 use crate::textbook::reference::maw::MindlinImpact;
 use crate::{Check, Finding, Prose};
@@ -136,6 +140,41 @@ impl Experiment {
     }
 }
 
+/// Two grains with linear springs and dashpots, the presets' in the plane of contact, that stick until they part.
+fn with_a_dashpot() -> Trial {
+    let friction = CundallStrack {
+        tangential_stiffness: 2.0 / 7.0,
+        tangential_damping: 0.1,
+        static_friction: 5.0,
+        kinetic_friction: 5.0,
+        sliding: Sliding::Spring,
+    };
+    let normal = LinearSpringDashpot {
+        normal_stiffness: 1.0,
+        normal_damping: 0.1,
+    };
+    let contact = ContactModel::new(Normal::Linear(normal), Some(friction));
+    let velocity = DVec3::new(-0.01, 0.01, 0.0);
+    Trial::of(Impact::between(contact, velocity, DVec3::ZERO))
+}
+
+/// The engine beside the equation of motion where the dashpot in the plane of contact takes its part.
+fn dashpot_checks() -> Result<[Check; 2]> {
+    let trial = with_a_dashpot();
+    let (found, expected) = (trial.rebound(Means::USUAL)?, outcome(&trial.impact));
+    let speed = trial.impact.relative_velocity().length();
+    let check = |name: &str, value: fn([DVec3; 2], [f64; 2]) -> f64| {
+        let expected = value(expected.velocity, expected.spin) / speed;
+        let found = value(found.velocity, found.spin) / speed;
+        let setting = "45 degrees, dashpot";
+        Check::relative(name, setting, expected, found, 2e-3).by("equation of motion")
+    };
+    Ok([
+        check("v_t'/v", |velocity, _| velocity[0].y - velocity[1].y),
+        check("r omega'/v", |_, spin| 0.5 * spin[0]),
+    ])
+}
+
 /// The largest difference of the engine from Mindlin's contact.
 fn beside_mindlin(place: usize, rows: &[Row], tolerance: f64) -> Check {
     let largest = rows.iter().fold(0.0_f64, |largest, Row { by, .. }| {
@@ -165,6 +204,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         beside_mindlin(0, &rows, 0.1),
         experiment.trial(15.0).kernels_agree("15 degrees")?,
     ]);
+    finding.checks.extend(dashpot_checks()?);
     for (angle, order) in [(15.0, [0.8, 3.0]), (60.0, [1.5, 4.0])] {
         let trial = experiment.trial(angle);
         let expected = outcome(&trial.impact).spin[0];

@@ -24,6 +24,7 @@ struct Law {
     stiffness: f64,
     damping: f64,
     tangential_stiffness: f64,
+    tangential_damping: f64,
     friction: f64,
 }
 
@@ -47,6 +48,7 @@ impl Law {
             stiffness,
             damping,
             tangential_stiffness: friction.map_or(0.0, |law| law.tangential_stiffness),
+            tangential_damping: friction.map_or(0.0, |law| law.tangential_damping),
             friction: friction.map_or(0.0, |law| law.kinetic_friction),
         }
     }
@@ -154,7 +156,7 @@ impl Motion {
                 return y;
             }
             mode = match mode {
-                Mode::Sticks => Mode::Slides(y[6].signum()),
+                Mode::Sticks => Mode::Slides(self.pull(&y).signum()),
                 Mode::Slides(sign) => {
                     y[6] = sign * self.law.friction_limit(&y) / self.law.tangential_stiffness;
                     Mode::Sticks
@@ -167,10 +169,11 @@ impl Motion {
     fn switch(&self, y: &State, mode: Mode) -> f64 {
         let law = &self.law;
         match mode {
-            Mode::Sticks if law.friction > 0.0 => {
-                law.tangential_stiffness * y[6].abs() - law.friction_limit(y)
-            }
-            Mode::Slides(sign) if law.normal_force(y[0], y[1]) > 0.0 => {
+            Mode::Sticks if law.friction > 0.0 => self.pull(y).abs() - law.friction_limit(y),
+            // With a dashpot a contact that slides is taken to slide to its end.
+            Mode::Slides(sign)
+                if law.tangential_damping == 0.0 && law.normal_force(y[0], y[1]) > 0.0 =>
+            {
                 // The bound on u grows faster than the contact slips.
                 let acceleration = self.slope(y, mode)[1];
                 let bound = law.friction / law.tangential_stiffness
@@ -187,9 +190,14 @@ impl Motion {
         (self.reach - overlap) * turning - arm(0) * one - arm(1) * other
     }
 
+    /// k_t u + eta_t v_t: what spring and dashpot pull with while the contact sticks.
+    fn pull(&self, y: &State) -> f64 {
+        self.law.tangential_stiffness * y[6] + self.law.tangential_damping * self.slip_velocity(y)
+    }
+
     fn tangential_force(&self, y: &State, mode: Mode) -> f64 {
         match mode {
-            Mode::Sticks => -self.law.tangential_stiffness * y[6],
+            Mode::Sticks => -self.pull(y),
             Mode::Slides(sign) => -sign * self.law.friction_limit(y),
         }
     }
@@ -218,9 +226,10 @@ impl Motion {
     }
 }
 
-/// Outcome of an impact whose tangential law has one coefficient of friction and no dashpot, or which has no friction.
+/// Outcome of an impact whose tangential law has one coefficient of friction, or which has no friction.
 ///
-/// Polar coordinates of the separation; while a contact sticks u follows the slip, and k_t |u| = mu f_n where it slides. It
+/// Polar coordinates of the separation; while a contact sticks u follows the slip and the force is k_t u + eta_t v_t; where it
+/// slides, the force is mu f_n. Without a dashpot it may stick again, with k_t |u| = mu f_n. It
 /// ends where the force of the Hertz law vanishes, or the overlap under the linear law.
 pub(crate) fn outcome(impact: &Impact) -> Outcome {
     let motion = Motion::of(impact);
@@ -249,7 +258,7 @@ pub(crate) fn outcome(impact: &Impact) -> Outcome {
 fn first_mode(motion: &Motion, y: &State, moment: f64) -> Mode {
     let slip = motion.slip_velocity(y);
     let law = &motion.law;
-    let pull = law.tangential_stiffness * slip.abs() * moment;
+    let pull = (law.tangential_stiffness * moment + law.tangential_damping) * slip.abs();
     if law.friction > 0.0 && pull > law.friction * law.normal_force(y[1] * moment, y[1]) {
         Mode::Slides(slip.signum())
     } else {
