@@ -3,9 +3,17 @@ import type { Frame, Row } from "./protocol";
 /** Rows that are kept, at most. */
 const ROWS = 8000;
 
+/** A row as the page keeps it. */
+export interface FilmRow extends Row {
+  /** NaN where there is no flow rate. */
+  average: number;
+  /** Friction at this time, as far as the page knows it. */
+  friction: number | null;
+}
+
 /** Frames in the order of time, and the time series beside them. */
 export abstract class Film {
-  rows: Row[] = [];
+  rows: FilmRow[] = [];
   /** Of the rows before the last period those are kept whose number is a multiple of this. */
   private each = 1;
 
@@ -52,7 +60,7 @@ export abstract class Film {
     const newest = this.rows.at(-1)?.number ?? -1;
     for (const row of rows) {
       if (row.number <= newest) continue;
-      this.rows.push({ ...row, friction });
+      this.rows.push({ ...row, average: row.average ?? NaN, friction });
       if (typeof row.average !== "number") this.average(this.rows.length - 1);
     }
     if (this.rows.length > ROWS) this.thinRows();
@@ -63,7 +71,7 @@ export abstract class Film {
     // The means to come are taken of all rows of the last period.
     const begin = this.rows[this.rows.length - 1].clock - 1;
     const recent = this.rows.filter(({ clock }) => clock > begin);
-    const thin = (rows: Row[]) => rows.filter(({ number }) => number % this.each === 0);
+    const thin = (rows: FilmRow[]) => rows.filter(({ number }) => number % this.each === 0);
     let before = thin(this.rows.slice(0, this.rows.length - recent.length));
     while (before.length > ROWS / 2) {
       this.each *= 2;

@@ -12,22 +12,28 @@ const FIRST_ROWS: usize = 4000;
 
 /// A row of the time series, for the charts.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Row {
     pub(crate) number: usize,
+    /// Time in periods of the drive's own strain rate.
     pub(crate) clock: f64,
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     pub(crate) flow_rate_ratio: f64,
     /// Its mean over the period that ends here, of rows that come thinned; of others the page works it out.
     pub(crate) average: Option<f64>,
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     pub(crate) bottleneck: f64,
     /// Of an open tube.
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     pub(crate) discharge_rate: f64,
     /// Width or force amplitude.
     pub(crate) amplitude: Option<f64>,
     pub(crate) strain_rate: Option<f64>,
 }
 
-/// What belongs to each parameter that may have a slider; `None` for a parameter that cannot be changed.
+/// What belongs to each parameter that may have a slider; nothing for a parameter that cannot be changed.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Sliders<T> {
     pub(crate) width: Option<T>,
     pub(crate) force_amplitude: Option<T>,
