@@ -62,7 +62,7 @@ function sparse(points: [number, number][]): [number, number][] {
 export const insteadOfLoop = ({ open }: Welcome): { name: string; label: string; key: keyof Row } =>
   open
     ? { name: "The discharge", label: "discharge rate / (m/t)", key: "discharge_rate" }
-    : { name: "The bottleneck", label: "narrowest place w / d", key: "bottleneck" };
+    : { name: "The bottleneck", label: "bottleneck w / d", key: "bottleneck" };
 
 /** This against time, with the time that is shown; false where it is not known. */
 export function drawInsteadOfLoop(chart: Chart, film: Film, tube: Welcome, clock: number, colours: Ink): boolean {
