@@ -58,7 +58,7 @@ export type Row = {
   /** Time in periods of the drive's own strain rate. */
   clock: number,
   flow_rate_ratio: number | null,
-  /** Its mean over the period that ends here, of rows that come thinned; of others the page works it out. */
+  /** Its mean over the period that ends here. */
   average: number | null,
   bottleneck: number | null,
   /** Of an open tube. */
