@@ -203,7 +203,7 @@ async function checkPlaying(browser) {
   await until(page, () => Math.abs(window.viewer.measured.number - 60) <= 1);
   const ratio = Number((await page.textContent("#ratio")).replace("−", "-"));
   assert(Number.isFinite(ratio), "no flow rate beside the frame");
-  assert.match(await page.textContent("#numbers"), /narrowest place w[0-9.]+ d/);
+  assert.match(await page.textContent("#numbers"), /bottleneck w[0-9.]+ d/);
   await pick(page, (x, y) => page.mouse.click(x, y));
   await everyLook(page, "a recording", pictures);
 

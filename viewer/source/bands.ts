@@ -5,7 +5,7 @@ import { BAND_FRAGMENT, BAND_VERTEX } from "./shaders";
 
 /** Normal forces from weak to strong, to be seen on a dark stage. */
 export const FORCE: Colour[] = [[70, 60, 110], [150, 50, 120], [225, 80, 60], [255, 170, 50], [255, 250, 190]];
-/** Part of the contacts whose force lies within the colours. */
+/** Part of the contacts whose force lies within the colours; crates/run/src/scene/spheres.rs has the same. */
 const COVERED = 0.97;
 
 /** The force that the colours and widths of contacts reach to; it follows slowly, so that nothing flickers. */

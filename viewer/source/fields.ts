@@ -15,7 +15,7 @@ export interface Field {
   values(frame: Frame, tube: Welcome, into: Float32Array): void;
 }
 
-/** Part of the grains whose speed lies within the colours where the wave stands. */
+/** Part of the grains whose pressure, and where the wave stands speed, lies within the colours; crates/run/src/scene/field.rs has the same. */
 const COVERED = 0.98;
 
 /** The speed that colours reach to: that of the wave, or where it stands a round one that few grains exceed. */
@@ -83,6 +83,7 @@ export const FIELDS: Record<string, Field> = {
   },
   coordination: {
     name: "contacts of a grain",
+    // To as many as MOST_CONTACTS there.
     ends: ["0", "12"],
     diverging: false,
     ofContacts: true,
@@ -100,7 +101,7 @@ export const FIELDS: Record<string, Field> = {
       // Sum of f r/(3 V), V = pi d^3/6 and r = d/2: f/(pi d^2).
       into.fill(0);
       eachContact(frame, (grain, force) => (into[grain] += force / (Math.PI * frame.diameter[grain] ** 2)));
-      const largest = into.slice().sort()[Math.floor(0.98 * (into.length - 1))];
+      const largest = into.slice().sort()[Math.floor(COVERED * (into.length - 1))];
       usual += 0.05 * (largest - usual) || largest;
       this.ends[1] = `${written(usual, 2)} m/(d t²)`;
       for (let i = 0; i < into.length; i++) into[i] /= usual || 1;

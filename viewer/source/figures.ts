@@ -1,5 +1,5 @@
 import { marked } from "./markup";
-import type { List } from "./results";
+import type { List } from "./messages";
 
 /** The figures of a reproduction, each with what it says and the studies behind it. */
 export function showFigures(box: HTMLElement, list: List, open: (study: number) => void): void {

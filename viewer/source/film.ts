@@ -3,10 +3,18 @@ import type { Frame, Row } from "./protocol";
 /** Rows that are kept, at most. */
 const ROWS = 8000;
 
+/** A row as the page keeps it. */
+export interface FilmRow extends Row {
+  /** NaN where there is no flow rate. */
+  average: number;
+  /** Friction at this time, as far as the page knows it. */
+  friction: number | null;
+}
+
 /** Frames in the order of time, and the time series beside them. */
 export abstract class Film {
-  rows: Row[] = [];
-  /** Of the rows before the last period those are kept whose number is a multiple of this. */
+  rows: FilmRow[] = [];
+  /** Of the rows before the last thinning those are kept whose number is a multiple of this. */
   private each = 1;
 
   /** Number of frames. */
@@ -47,42 +55,19 @@ export abstract class Film {
     return frames;
   }
 
-  /** Takes rows that are new, each with the mean over the period before it. */
+  /** Takes rows that are new. */
   addRows(rows: Row[], friction: number | null = null): void {
     const newest = this.rows.at(-1)?.number ?? -1;
-    for (const row of rows) {
-      if (row.number <= newest) continue;
-      this.rows.push({ ...row, friction });
-      if (typeof row.average !== "number") this.average(this.rows.length - 1);
-    }
+    for (const row of rows)
+      if (row.number > newest) this.rows.push({ ...row, average: row.average ?? NaN, friction });
     if (this.rows.length > ROWS) this.thinRows();
   }
 
-  /** Lets rows go evenly, so that those from long ago are as near to each other as those from a while ago. */
+  /** Lets rows go evenly, so that those from long ago are as near to each other as those from a while ago; the newest stays. */
   private thinRows(): void {
-    // The means to come are taken of all rows of the last period.
-    const begin = this.rows[this.rows.length - 1].clock - 1;
-    const recent = this.rows.filter(({ clock }) => clock > begin);
-    const thin = (rows: Row[]) => rows.filter(({ number }) => number % this.each === 0);
-    let before = thin(this.rows.slice(0, this.rows.length - recent.length));
-    while (before.length > ROWS / 2) {
-      this.each *= 2;
-      before = thin(before);
-    }
-    this.rows = [...before, ...recent];
-  }
-
-  private average(last: number): void {
-    let [sum, number] = [0, 0];
-    const begin = this.rows[last].clock - 0.999;
-    for (let k = last; k >= 0 && this.rows[k].clock > begin; k--) {
-      const ratio = this.rows[k].flow_rate_ratio;
-      if (ratio === null) continue;
-      sum += ratio;
-      number += 1;
-    }
-    // Where there is no flow rate its mean is NaN.
-    this.rows[last].average = sum / number;
+    const newest = this.rows[this.rows.length - 1];
+    const thin = () => (this.rows = this.rows.filter((row) => row.number % this.each === 0 || row === newest));
+    for (thin(); this.rows.length > ROWS / 2; thin()) this.each *= 2;
   }
 
   /** The last row that is not after a time, or -1. */

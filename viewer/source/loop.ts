@@ -1,7 +1,7 @@
 import { Chart, type Entry, type Ink, ink, written } from "./charts";
-import type { Film } from "./film";
+import type { Film, FilmRow } from "./film";
 import { type Ghost, ghostsOf, ghostsOfFriction } from "./ghosts";
-import type { Frame, Row, Welcome } from "./protocol";
+import type { Frame, Welcome } from "./protocol";
 import { download } from "./share";
 import { SvgContext } from "./svg";
 
@@ -20,7 +20,7 @@ export interface Thresholds {
 export interface Across {
   name: string;
   unit: string;
-  of: (row: Row) => number;
+  of: (row: FilmRow) => number;
   /** The words for up and down. */
   ways: [string, string];
   ghosts: Ghost[];
@@ -32,13 +32,13 @@ export function acrossOf(tube: Welcome, frame: Frame): Across {
   if (friction.length > 0)
     return { name: "friction μ", unit: "", of: (row) => row.friction ?? NaN, ways: ["more friction", "less"], ghosts: friction };
   const ghosts = ghostsOf(tube, frame.driven);
-  const of = (row: Row) => row.amplitude;
+  const of = (row: FilmRow) => row.amplitude ?? NaN;
   if (tube.control === "strain") return { name: "width w / d", unit: " d", of, ways: ["widened", "narrowed"], ghosts };
   return { name: "force amplitude f / (m d/t²)", unit: "", of, ways: ["more force", "less"], ghosts };
 }
 
 /** Where the flow crossed half of the largest while the parameter was driven. */
-export function thresholds(rows: Row[], { of }: Across): Thresholds {
+export function thresholds(rows: FilmRow[], { of }: Across): Thresholds {
   const found: Thresholds = { jams: null, letsGo: null };
   let [side, crossed, low, high] = [0, NaN, Infinity, -Infinity];
   for (const row of rows) {
@@ -108,10 +108,10 @@ export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, 
 }
 
 /** Time between two rows above which some are missing. */
-export const farApart = (rows: Row[]): number => 1 + 0.003 * (rows.at(-1)?.clock ?? 0);
+export const farApart = (rows: FilmRow[]): number => 1 + 0.003 * (rows.at(-1)?.clock ?? 0);
 
 /** Which way the parameter went last decides how a piece is drawn: full upwards, dashed downwards. */
-function drawCourse(chart: Chart, rows: Row[], { of }: Across, colours: Ink): void {
+function drawCourse(chart: Chart, rows: FilmRow[], { of }: Across, colours: Ink): void {
   const each = Math.ceil(rows.length / 3000);
   let [before, direction] = [0, 0];
   let piece: [number, number][] = [];
@@ -149,7 +149,7 @@ export function giveLoop(kind: "png" | "svg" | "csv", { canvas }: Chart, film: F
 }
 
 /** The course as a table. */
-function asTable(rows: Row[], tube: Welcome): string {
+function asTable(rows: FilmRow[], tube: Welcome): string {
   const amplitude = tube.control === "strain" ? "width" : "force_amplitude";
   const lines = rows.map((row) => [row.clock, row.amplitude, row.strain_rate, row.flow_rate_ratio, Number.isFinite(row.average) ? row.average : null].join(","));
   return [`period,${amplitude},strain_rate,flow_rate_ratio,flow_rate_ratio_mean_of_a_period`, ...lines, ""].join("\n");

@@ -34,7 +34,7 @@ export function drawFlow(chart: Chart, film: Film, tube: Welcome, clock: number,
   if (recorded && recorded[recorded.length - 1] - recorded[0] < 0.98 * last) chart.curve([[recorded[0], least], [recorded[recorded.length - 1], least]], colours.accent, 5);
   chart.curve(record.map(([x, y]) => [x, y ?? NaN]), colours.wall, 1.5, [4, 3]);
   chart.curve(sparse(rows.map((row) => [row.clock, row.flow_rate_ratio ?? NaN])), colours.line, 1);
-  const fluid = newtonian.length > 0 ? rows.map((row): [number, number] => [row.clock, between(newtonian, row.amplitude)]) : [];
+  const fluid = newtonian.length > 0 ? rows.map((row): [number, number] => [row.clock, between(newtonian, row.amplitude ?? NaN)]) : [];
   chart.curve(sparse(fluid), colours.faint, 1.5, [1, 3]);
   chart.curve(sparse(rows.map((row) => [row.clock, row.average])), colours.accent, 2);
   chart.upright(clock, colours.text);
@@ -62,7 +62,7 @@ function sparse(points: [number, number][]): [number, number][] {
 export const insteadOfLoop = ({ open }: Welcome): { name: string; label: string; key: keyof Row } =>
   open
     ? { name: "The discharge", label: "discharge rate / (m/t)", key: "discharge_rate" }
-    : { name: "The bottleneck", label: "narrowest place w / d", key: "bottleneck" };
+    : { name: "The bottleneck", label: "bottleneck w / d", key: "bottleneck" };
 
 /** This against time, with the time that is shown; false where it is not known. */
 export function drawInsteadOfLoop(chart: Chart, film: Film, tube: Welcome, clock: number, colours: Ink): boolean {

@@ -15,12 +15,12 @@ export function extent({ recorded }: Welcome): string {
 /** The sample that was taken last. */
 export function factsOfSample({ sample }: Frame, tube: Welcome): Facts {
   const ends: Facts = [
-    ["discharge rate", sample ? `${written(sample.discharge_rate ?? NaN)} m/t` : "–"],
-    ["hold-up", sample ? `${written(sample.hold_up ?? NaN, 4)} m` : "–"],
+    ["discharge rate", sample ? `${written(sample.discharge_rate)} m/t` : "–"],
+    ["hold-up", sample ? `${written(sample.hold_up, 4)} m` : "–"],
   ];
   return [
     ...(tube.open ? ends : []),
-    ["narrowest place w", sample ? `${written(sample.bottleneck)} d` : "–"],
+    ["bottleneck w", sample ? `${written(sample.bottleneck)} d` : "–"],
     ["contacts of a grain Z", sample ? written(sample.contacts) : "–"],
     ["granular temperature", sample ? `${written(sample.granular_temperature)} m d²/t²` : "–"],
     ["power of the wall", sample ? `${written(sample.wall_power)} m d²/t³` : "–"],

@@ -1,28 +1,6 @@
 /** The rows of a study: what was varied, what was measured, and points with their errors. */
 
-/** What the server says of a study; crates/viewer/src/server/study.rs says the same. */
-export interface Study {
-  version: number;
-  name: string;
-  title: string;
-  columns: { name: string; label: string | null; unit: string; description: string; values: (number | string | boolean | null)[] }[];
-  runs: (number | null)[];
-  counts: Record<string, number>;
-  growing: boolean;
-}
-
-export interface Figure {
-  claim: string;
-  title: string;
-  verdict: string;
-  caption: string;
-  studies: string[];
-}
-
-export interface List {
-  studies: { name: string; title: string; rows: number }[];
-  figures: Figure[];
-}
+import type { Study } from "./messages";
 
 export type Value = number | string;
 

@@ -5,9 +5,10 @@ import { type Curve, curvesOf, drawCurves, extent } from "./curves";
 import { showFigures } from "./figures";
 import { across, drawHeat, type Scale } from "./heat";
 import { showMarks, showScale } from "./legend";
+import type { List, Study } from "./messages";
 import { element, fill, isDark, listenToLook, options, say } from "./page";
 import { beside, type Panel, placeOf, pointAt, put } from "./panel";
-import { type List, type Parameter, type Point, Results, type Study, type Value } from "./results";
+import { type Parameter, type Point, Results, type Value } from "./results";
 import { valueOf } from "./words";
 
 /** Milliseconds from one look for new rows to the next, while runs are to come and when none is known to be. */

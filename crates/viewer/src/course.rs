@@ -13,6 +13,7 @@ const MARKS: usize = 24;
 /// A parameter that was led to a value at a step.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(from = "(u64, Steered, f64)", into = "(u64, Steered, f64)")]
+#[cfg_attr(test, derive(ts_rs::TS), ts(type = "[number, Steered, number]"))]
 pub(crate) struct Turn {
     pub(crate) step: u64,
     pub(crate) parameter: Steered,

@@ -32,6 +32,7 @@ const WAITING: f64 = 3.0;
 
 /// The head of a frame.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Head {
     /// Number of a recorded frame, counted from 0; null where the run is computed.
     pub(crate) number: Option<usize>,
@@ -65,6 +66,7 @@ pub(crate) struct Head {
     /// The last sample.
     pub(crate) sample: Option<Shown>,
     /// Warnings about the run so far; about the whole run if it is a recording.
+    #[cfg_attr(test, ts(type = "Array<{ key: string, message: string }>"))]
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -103,16 +105,19 @@ impl Head {
 
 /// Numbers of a sample that are shown.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Shown {
     flow_rate: f64,
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     flow_rate_ratio: f64,
     granular_temperature: f64,
     contacts: f64,
     escaped: f64,
     bottleneck: f64,
     wall_power: f64,
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     energy_residual: f64,
-    /// Mass that an open tube discharges a time; `hold_up` is the mass inside. NaN in a periodic tube.
+    /// Mass that an open tube discharges a time, 0 of a periodic one; `hold_up` is the mass inside.
     discharge_rate: f64,
     hold_up: f64,
 }

@@ -24,6 +24,8 @@ mod server;
 mod steering;
 mod timeline;
 mod tube;
+#[cfg(all(test, feature = "server"))]
+mod typescript;
 mod welcome;
 mod within;
 

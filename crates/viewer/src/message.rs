@@ -6,6 +6,7 @@ use crate::course::Turn;
 
 /// A command of a client.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Command {
     /// Lets the run go on, or stops it.
@@ -57,6 +58,7 @@ pub(crate) enum Command {
 
 /// A parameter that can be changed while a run goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Steered {
     /// w, strain control.
@@ -80,6 +82,7 @@ impl Steered {
 
 /// A message to clients other than a frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Notice {
     /// The state was saved.

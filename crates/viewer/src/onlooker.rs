@@ -48,7 +48,7 @@ impl Onlooker {
         let head = Head {
             playing,
             speed,
-            rows: rows(run, self.told).collect(),
+            rows: rows(run, self.told),
             warnings: self.warned.iter().flat_map(|it| it.1.clone()).collect(),
             ..Head::of(run, &contacts)
         };

@@ -9,25 +9,34 @@ use crate::message::Steered;
 
 /// Rows that a client gets at first, at most.
 const FIRST_ROWS: usize = 4000;
+/// A period less what rounding may add, so that a mean takes no row of the period before.
+const PERIOD: f64 = 0.999;
 
 /// A row of the time series, for the charts.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Row {
     pub(crate) number: usize,
+    /// Time in periods of the drive's own strain rate.
     pub(crate) clock: f64,
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     pub(crate) flow_rate_ratio: f64,
-    /// Its mean over the period that ends here, of rows that come thinned; of others the page works it out.
-    pub(crate) average: Option<f64>,
+    /// Its mean over the period that ends here.
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
+    pub(crate) average: f64,
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     pub(crate) bottleneck: f64,
     /// Of an open tube.
+    #[cfg_attr(test, ts(as = "Option<f64>"))]
     pub(crate) discharge_rate: f64,
     /// Width or force amplitude.
     pub(crate) amplitude: Option<f64>,
     pub(crate) strain_rate: Option<f64>,
 }
 
-/// What belongs to each parameter that may have a slider; `None` for a parameter that cannot be changed.
+/// What belongs to each parameter that may have a slider; nothing for a parameter that cannot be changed.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Sliders<T> {
     pub(crate) width: Option<T>,
     pub(crate) force_amplitude: Option<T>,
@@ -90,7 +99,7 @@ impl Timeline<'_> {
             number,
             clock,
             flow_rate_ratio: f64::NAN,
-            average: None,
+            average: f64::NAN,
             bottleneck: f64::NAN,
             discharge_rate: f64::NAN,
             amplitude: driven.width.or(driven.force_amplitude),
@@ -119,27 +128,39 @@ impl Timeline<'_> {
 }
 
 /// Rows of the time series of a run from a number on.
-pub(crate) fn rows(run: &Run, from: usize) -> impl Iterator<Item = Row> {
+pub(crate) fn rows(run: &Run, from: usize) -> Vec<Row> {
     let timeline = Timeline(run.configuration());
-    let samples = run.recorder().samples().iter().enumerate().skip(from);
-    samples.map(move |(number, sample)| timeline.row_of(number, sample))
+    let samples = run.recorder().samples();
+    // Those before are there for the means.
+    let begin = samples.get(from).map_or(samples.len(), |first| {
+        let begin = timeline.clock(first.time) - PERIOD;
+        samples.partition_point(|sample| timeline.clock(sample.time) <= begin)
+    });
+    let rows = samples.iter().enumerate().skip(begin);
+    let mut rows: Vec<Row> = rows
+        .map(|(number, sample)| timeline.row_of(number, sample))
+        .collect();
+    average(&mut rows);
+    rows.split_off(from.min(samples.len()) - begin)
 }
 
-/// A whole time series, thinned, with means of the rows as they were before; those of the last period stay, for the page's
-/// next means.
-pub(crate) fn history(rows: impl Iterator<Item = Row>) -> Vec<Row> {
-    let mut rows: Vec<Row> = rows.collect();
+/// Works out the means of rows in the order of time.
+pub(crate) fn average(rows: &mut [Row]) {
     let mut first = 0;
     for last in 0..rows.len() {
-        let begin = rows[last].clock - 0.999;
+        let begin = rows[last].clock - PERIOD;
         while rows[first].clock <= begin {
             first += 1;
         }
         let ratios = rows[first..=last].iter().map(|row| row.flow_rate_ratio);
         let known: Vec<f64> = ratios.filter(|ratio| !ratio.is_nan()).collect();
-        rows[last].average = Some(known.iter().sum::<f64>() / known.len() as f64);
+        rows[last].average = known.iter().sum::<f64>() / known.len() as f64;
     }
-    let last = rows.split_off(first);
+}
+
+/// A whole time series, thinned; the last row stays.
+pub(crate) fn history(mut rows: Vec<Row>) -> Vec<Row> {
+    let last = rows.pop();
     thin(rows.into_iter()).into_iter().chain(last).collect()
 }
 
@@ -155,27 +176,49 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_row_has_the_same_mean_wherever_rows_begin() {
+        let settings = ["tube.waves=2", "drive.strain_rate=0.05"].map(str::to_owned);
+        let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+        let mut run = Run::new(configuration).unwrap();
+        for _ in 0..45 {
+            run.advance().unwrap();
+        }
+        let told = |rows: &[Row]| -> Vec<_> {
+            let of_row = |row: &Row| (row.number, row.average.to_bits());
+            rows.iter().map(of_row).collect()
+        };
+        let all = rows(&run, 0);
+        assert!(all[all.len() - 1].clock > 2.0);
+        for from in [0, 1, all.len() / 2, all.len() - 1, all.len(), all.len() + 7] {
+            let tail = &all[from.min(all.len())..];
+            assert_eq!(told(&rows(&run, from)), told(tail), "{from}");
+        }
+    }
+
+    #[test]
     fn a_long_history_is_thinned_evenly_with_the_means_of_all_its_rows() {
         let row = |number: usize| Row {
             number,
             clock: number as f64 / 20.0,
             flow_rate_ratio: (number % 20) as f64,
-            average: None,
+            average: f64::NAN,
             bottleneck: 0.0,
             discharge_rate: f64::NAN,
             amplitude: None,
             strain_rate: None,
         };
-        let rows = history((0..50_000).map(row));
-        assert!(rows.len() > 2000 && rows.len() < 4100, "{}", rows.len());
-        let thinned = &rows[..rows.len() - 20];
+        let mut rows: Vec<Row> = (0..50_000).map(row).collect();
+        average(&mut rows);
+        let rows = history(rows);
+        assert!(rows.len() > 2000 && rows.len() <= 4001, "{}", rows.len());
+        let (last, thinned) = rows.split_last().unwrap();
         assert!(
             thinned
                 .windows(2)
                 .all(|two| two[1].number - two[0].number == 16)
         );
-        assert_eq!(rows[rows.len() - 20].number, 49_980);
-        let means = rows.iter().skip(2).map(|row| row.average.unwrap());
+        assert_eq!(last.number, 49_999);
+        let means = rows.iter().skip(2).map(|row| row.average);
         assert!(means.into_iter().all(|mean| (mean - 9.5).abs() < 1e-9));
     }
 }

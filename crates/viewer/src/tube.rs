@@ -394,7 +394,7 @@ impl Tube {
             ended: self.ended,
             speed: self.speed,
             aims: self.steering.aims(&self.run),
-            rows: rows(&self.run, first).collect(),
+            rows: rows(&self.run, first),
             warnings: self.warned.1.clone(),
             ..Head::of(&self.run, &contacts)
         };

@@ -12,11 +12,14 @@ use crate::within::Within;
 
 /// The tube and the ranges of its sliders.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Welcome {
     #[serde(rename = "type")]
+    #[cfg_attr(test, ts(type = "\"welcome\""))]
     kind: &'static str,
     version: &'static str,
     title: String,
+    #[cfg_attr(test, ts(type = "\"strain\" | \"stress\""))]
     control: &'static str,
     grains: usize,
     length: f64,
@@ -39,6 +42,7 @@ pub(crate) struct Welcome {
     newtonian: Vec<(f64, f64)>,
     pub(crate) driven: Driven,
     /// The whole time series of a run that was computed before: (time in periods, J/Jmax).
+    #[cfg_attr(test, ts(as = "Vec<(f64, Option<f64>)>"))]
     pub(crate) record: Vec<(f64, f64)>,
     /// The time series since the viewer began, or of a recording.
     pub(crate) rows: Vec<Row>,
@@ -54,6 +58,7 @@ pub(crate) struct Welcome {
 
 /// The frames of a recording.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Recorded {
     /// Time of each in periods.
     pub(crate) clocks: Vec<f64>,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// The place of a run in its study.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Within {
     /// Name of the study.
     pub(crate) study: String,
@@ -15,6 +16,7 @@ pub(crate) struct Within {
 
 /// A run of the same point with other random numbers.
 #[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Sibling {
     pub(crate) number: usize,
     /// Number of the replicate, from 0.

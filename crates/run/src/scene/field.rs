@@ -47,11 +47,11 @@ pub(super) struct Coloured {
     usual_pressure: f64,
 }
 
-/// Contacts that most grains have fewer than.
+/// Contacts that most grains have fewer than; the page's colours end there too (`viewer/source/fields.ts`).
 const MOST_CONTACTS: f64 = 12.0;
 /// Pressures of packed grains in units of k/d and of Y.
 const USUAL_PRESSURES: [f64; 2] = [0.2, 0.01];
-/// Part of the grains whose pressure lies within the colours.
+/// Part of the grains whose speed or pressure lies within the colours, of the page too.
 const COVERED: f64 = 0.98;
 
 impl Coloured {

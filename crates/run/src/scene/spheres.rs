@@ -16,7 +16,7 @@ const STONE: [u8; 3] = [207, 202, 193];
 const FAR: f64 = 2.75;
 /// Part of their size at which grains are drawn among the forces between them.
 const SHRUNK: f64 = 0.32;
-/// Part of the contacts whose force lies within the colours.
+/// Part of the contacts whose force lies within the colours, of the page too (`viewer/source/bands.ts`).
 const COVERED: f64 = 0.97;
 /// From one sphere of a rod to the next: a part of its radius, which nobody sees, but not less than so much \[d\].
 const SPACING: (f64, f64) = (0.1, 0.008);

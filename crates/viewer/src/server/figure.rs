@@ -13,6 +13,7 @@ const FIGURES: &str = "figures";
 
 /// A figure with its caption, and the names of the studies behind it.
 #[derive(Clone, Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
 pub struct Figure {
     /// Short name of the claim.
     claim: String,

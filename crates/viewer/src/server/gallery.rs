@@ -6,7 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use peristalsis_engine::Instructions;
 use peristalsis_run::Run;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::error::ViewerError;
 use super::figure::Figure;
@@ -33,6 +33,24 @@ pub(crate) struct Gallery {
     open: Mutex<Vec<(Place, Session)>>,
 }
 
+/// Studies and figures, for the page of results.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub(crate) struct List<'a> {
+    studies: Vec<Listed>,
+    figures: &'a [Figure],
+}
+
+/// A study in the list.
+#[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS))]
+pub(crate) struct Listed {
+    name: String,
+    title: String,
+    /// Finished runs in it.
+    rows: usize,
+}
+
 /// Why a run cannot be watched.
 #[derive(Debug)]
 pub(crate) enum Closed {
@@ -55,12 +73,20 @@ impl Gallery {
     }
 
     /// Studies and figures in JSON.
-    pub(crate) fn list(&self) -> Value {
+    pub(crate) fn list(&self) -> String {
         let studies = self.studies.iter().map(|study| {
             let study = held(study);
-            json!({ "name": study.name(), "title": study.title(), "rows": study.rows() })
+            Listed {
+                name: study.name().to_owned(),
+                title: study.title().to_owned(),
+                rows: study.rows(),
+            }
         });
-        json!({ "studies": studies.collect::<Vec<Value>>(), "figures": self.figures })
+        let list = List {
+            studies: studies.collect(),
+            figures: &self.figures,
+        };
+        serde_json::to_string(&list).expect("a list holds numbers and words only")
     }
 
     /// A study in JSON; `Some(None)` if the client has this version already, `None` if no study has this number.

@@ -3,14 +3,14 @@
 mod assets;
 mod error;
 mod figure;
-mod gallery;
+pub(crate) mod gallery;
 mod guard;
 mod recording;
 mod recording_host;
 mod run_host;
 mod session;
 mod socket;
-mod study;
+pub(crate) mod study;
 mod viewer;
 
 pub use error::ViewerError;

@@ -11,7 +11,7 @@ use peristalsis_run::{Warning, walls, warnings};
 
 use super::error::ViewerError;
 use crate::frame::{Head, of_recording, of_wall};
-use crate::timeline::{Row, Timeline, history};
+use crate::timeline::{Row, Timeline, average, history};
 use crate::welcome::{Recorded, Welcome};
 
 /// Relative difference of the tube's length that rounding to 32 bits may cause.
@@ -85,7 +85,7 @@ impl Recording {
         let timeline = Timeline(&self.configuration);
         let clocks = self.times.iter().map(|&time| timeline.clock(time));
         let mut welcome = Welcome::of(&self.configuration, &self.wall, self.grains, title);
-        welcome.rows = history(self.rows.iter().copied());
+        welcome.rows = history(self.rows.clone());
         welcome.recorded = Some(Recorded {
             clocks: clocks.collect(),
             lost_frames: self.lost_frames(),
@@ -187,6 +187,7 @@ impl Recording {
                 });
             }
         }
+        average(&mut rows);
         Ok(rows)
     }
 

@@ -53,6 +53,7 @@ pub(crate) struct StudyRun {
 
 /// A study in JSON, for its page.
 #[derive(Debug, Serialize)]
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Study"))]
 pub(crate) struct Shown<'a> {
     version: u64,
     name: &'a str,
@@ -60,19 +61,23 @@ pub(crate) struct Shown<'a> {
     columns: Vec<ShownColumn<'a>>,
     /// Number of the run of each row; null where it cannot be watched.
     runs: Vec<Option<usize>>,
+    #[cfg_attr(test, ts(as = "BTreeMap<String, usize>"))]
     counts: &'a BTreeMap<State, usize>,
     /// Whether there may be more rows later.
     growing: bool,
 }
 
+/// A column of its table.
 #[derive(Debug, Serialize)]
-struct ShownColumn<'a> {
+#[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Column"))]
+pub(crate) struct ShownColumn<'a> {
     name: &'a str,
     /// Words or symbol at an axis.
     label: Option<&'static str>,
     unit: &'a str,
     description: &'a str,
     /// NaN, a missing number, is null.
+    #[cfg_attr(test, ts(type = "Array<number | string | boolean | null>"))]
     values: &'a Values,
 }
 

@@ -247,7 +247,7 @@ fn rooms(gallery: Arc<Gallery>) -> Router<Shared> {
         .route("/{token}/", get(async || asset("study.html")))
         .route(
             "/{token}/list",
-            get(async move || ([(header::CONTENT_TYPE, JSON)], list.list().to_string())),
+            get(async move || ([(header::CONTENT_TYPE, JSON)], list.list())),
         )
         .route(
             "/{token}/study/{study}",
