@@ -67,7 +67,7 @@ mod _core {
     #[pymodule_export]
     use crate::run::Run;
     #[pymodule_export]
-    use crate::schema::{schema, summary_keys, summary_schema};
+    use crate::schema::{results_schema, schema, summary_keys, summary_schema};
     #[pymodule_export]
     use crate::study::{Study, store_counts, store_export, store_rows};
     #[pymodule_export]

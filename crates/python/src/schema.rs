@@ -1,5 +1,11 @@
-//! Schemas of what goes in and of what comes out, which Python's types are made of (scripts/python_types.py).
+//! Schemas of what goes in and of what comes out, which Python's types are made of (scripts/python_types.py and
+//! scripts/python_results.py).
 
+use peristalsis_analysis::{
+    AutocorrelationTime, CollapseEstimate, CurveFit, DipTest, Hysteresis, InverseFit, JointTest,
+    Jump, LawEvidence, MomentPeak, Moments, NearestFit, ScatterLawFit, ScatteredLine, SecondMoment,
+    ShiftedExponentialFit, StationaryMean, SurvivalStep, TwoPeaks, WidthEnsemble, WindowRunsFit,
+};
 use pyo3::prelude::*;
 use schemars::SchemaGenerator;
 use schemars::generate::SchemaSettings;
@@ -38,4 +44,37 @@ pub(crate) fn summary_schema() -> String {
         properties["status"] = status.to_value();
     }
     summary.as_value().to_string()
+}
+
+/// The JSON schemas of what estimators answer, and of what is in it, by name.
+#[pyfunction]
+pub(crate) fn results_schema() -> String {
+    let answers = [
+        SchemaGenerator::subschema_for::<AutocorrelationTime>,
+        SchemaGenerator::subschema_for::<CollapseEstimate>,
+        SchemaGenerator::subschema_for::<CurveFit>,
+        SchemaGenerator::subschema_for::<DipTest>,
+        SchemaGenerator::subschema_for::<Hysteresis>,
+        SchemaGenerator::subschema_for::<InverseFit>,
+        SchemaGenerator::subschema_for::<JointTest>,
+        SchemaGenerator::subschema_for::<Jump>,
+        SchemaGenerator::subschema_for::<LawEvidence>,
+        SchemaGenerator::subschema_for::<MomentPeak>,
+        SchemaGenerator::subschema_for::<Moments>,
+        SchemaGenerator::subschema_for::<NearestFit>,
+        SchemaGenerator::subschema_for::<ScatterLawFit>,
+        SchemaGenerator::subschema_for::<ScatteredLine>,
+        SchemaGenerator::subschema_for::<SecondMoment>,
+        SchemaGenerator::subschema_for::<ShiftedExponentialFit>,
+        SchemaGenerator::subschema_for::<StationaryMean>,
+        SchemaGenerator::subschema_for::<SurvivalStep>,
+        SchemaGenerator::subschema_for::<TwoPeaks>,
+        SchemaGenerator::subschema_for::<WidthEnsemble>,
+        SchemaGenerator::subschema_for::<WindowRunsFit>,
+    ];
+    let mut generator = generator();
+    for describe in answers {
+        describe(&mut generator);
+    }
+    serde_json::Value::from(generator.take_definitions(true)).to_string()
 }
