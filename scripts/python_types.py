@@ -1,10 +1,11 @@
 """Writes the types of the Python package's keywords and summaries, crates/python/python/peristalsis/_types.py.
 
-They are made of the schema of configurations and of the table of a run's quantities, as the installed package knows them:
-`python scripts/python_types.py`. A test says whether the file is up to date.
+They are made of the schemas of configurations and of summaries and of the table of a run's quantities, as the installed
+package knows them: `python scripts/python_types.py`. A test says whether the file is up to date.
 """
 
 import json
+import re
 import sys
 import textwrap
 from collections.abc import Iterator, Mapping
@@ -15,7 +16,7 @@ from peristalsis import _core, _keywords
 
 OUT = Path(__file__).parent.parent / "crates/python/python/peristalsis/_types.py"
 
-HEAD = '''"""Types of keywords and of summaries. Made by scripts/python_types.py from the schema and the table of quantities."""
+HEAD = '''"""Types of keywords and of summaries. Made by scripts/python_types.py from schemas and the table of quantities."""
 
 from __future__ import annotations
 
@@ -23,8 +24,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 '''
-
-KINDS = {"real": "float", "integer": "int", "text": "str", "boolean": "bool"}
 
 KEYWORDS_EXAMPLE = '''
     Examples
@@ -48,62 +47,7 @@ SUMMARY_EXAMPLE = '''
 
 '''
 
-#: What a summary holds besides the quantities.
-REST = '''
-class ThresholdTime(TypedDict):
-    """The transition as another threshold sees it."""
-
-    threshold: float
-    """J/Jmax whose crossing counts."""
-    time: float | None
-    """tau [t]; `None` where there was no transition."""
-
-
-class Packing(TypedDict):
-    """How the grains were placed."""
-
-    inserted: int
-    """Grains that random insertion placed without overlap; the others were grown into place."""
-    iterations: int
-    """Iterations of the relaxation; 0 where insertion placed all."""
-    mean_overlap: float
-    """Mean overlap of the contacts left [d]."""
-    largest_overlap: float
-    """Largest overlap [d]."""
-    stored_energy: float
-    """Elastic energy stored [m d^2/t^2]."""
-
-
-class WarningEntry(TypedDict):
-    """A doubt about the run."""
-
-    key: str
-    """The key to look at."""
-    message: str
-    """The consequence to expect."""
-'''
-
-END = '''    pumping: PumpingSummary | None
-    """Pumping against a body force; `None` without one."""
-    open: OpenSummary | None
-    """What passes through an open tube; `None` of a periodic one."""
-    throat: ThroatSummary
-    """About a fifth of the wavelength, where the tube is narrowest."""
-    belly: BellySummary
-    """About a fifth of the wavelength, where it is widest."""
-    si: SiSummary | None
-    """Quantities in SI; `None` without the table ``units``."""
-    transition_times: list[ThresholdTime]
-    """The transition as other thresholds see it."""
-    packing: Packing
-    """How the grains were placed."""
-    message: str | None
-    """Why the run diverged, where it did."""
-    wall_diagnosis: list[str]
-    """Faults of an elastic wall: when, where, and the likely cause."""
-    warnings: list[WarningEntry]
-    """What looks doubtful."""
-
+END = '''
 
 class RunSummary(Summary):
     """A summary with the configuration that was given to `peristalsis.run`.
@@ -121,20 +65,43 @@ class RunSummary(Summary):
 '''
 
 
-def kind_of(schema: Mapping[str, Any]) -> str:
-    """The type of a value that a schema allows."""
+#: Types by their names in a schema, and in the table of quantities.
+KINDS = {"number": "float", "integer": "int", "boolean": "bool", "string": "str", "null": "None"}
+KINDS |= {"real": "float", "text": "str"}
+
+
+def kind_of(schema: Mapping[str, Any], several: str = "Sequence[{}]", table: str = "Mapping[str, Any]") -> str:
+    """The type of a value that a schema allows; that of an array as `several`, of an object without a name as `table`."""
+    if "$ref" in schema:
+        return str(schema["$ref"]).rpartition("/")[2]
     forms = schema.get("anyOf") or schema.get("oneOf")
     if forms:
         names = [json.dumps(form["const"]) for form in forms if "const" in form]
         kinds = [f"Literal[{', '.join(names)}]"] if names else []
-        return " | ".join(dict.fromkeys(kinds + [kind_of(form) for form in forms if "const" not in form]))
-    match schema.get("type"):
+        kinds += [kind_of(form, several, table) for form in forms if "const" not in form]
+        return " | ".join(dict.fromkeys(kinds))
+    match schema["type"]:
         case "array":
-            return f"Sequence[{kind_of(schema['items'])}]"
+            return several.format(kind_of(schema["items"], several, table))
         case "object":
-            return "Mapping[str, Any]"
-        case name:
-            return {"number": "float", "integer": "int", "boolean": "bool", "string": "str"}[str(name)]
+            return table
+        case [*kinds]:
+            return " | ".join(kind_of({**schema, "type": kind}, several, table) for kind in kinds)
+        case kind:
+            return KINDS[kind]
+
+
+def parts(schema: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any], bool]]:
+    """The properties of a schema in their order, those that may be absent last: (name, schema, whether it may)."""
+    required = schema.get("required", [])
+    names = [*required, *(name for name in schema["properties"] if name not in required)]
+    return [(name, schema["properties"][name], name not in required) for name in names]
+
+
+def plain(words: str) -> str:
+    """The documentation of Rust without links and line breaks."""
+    words = re.sub(r"\[(`[^`]+`)\](\([^)]*\))?", r"\1", words)
+    return "\n\n".join(" ".join(part.split()) for part in re.sub(r"\\([\[\]])", r"\1", words).split("\n\n"))
 
 
 def at(schema: Mapping[str, Any], key: str) -> Mapping[str, Any]:
@@ -168,20 +135,35 @@ def keywords() -> Iterator[str]:
             yield field(keyword, kind_of(of_key), meaning)
 
 
+def dictionary(name: str, schema: Mapping[str, Any]) -> Iterator[str]:
+    """The lines of a dictionary in a summary."""
+    yield f'\n\nclass {name}(TypedDict):\n    """{plain(schema["description"])}"""\n\n'
+    for key, of_key, _ in parts(schema):
+        yield field(key, kind_of(of_key, "list[{}]"), plain(of_key["description"]))
+
+
 def summary() -> Iterator[str]:
     """The lines of a summary."""
+    schema = json.loads(_core.summary_schema())
+    for name, of_name in schema["$defs"].items():
+        yield from dictionary(name, of_name)
     groups: dict[str, list[str]] = {}
-    for key, unit, text, kind, is_optional in _core.summary_keys():
+    for key, unit, meaning, kind, is_optional in _core.summary_keys():
         group, _, name = key.rpartition(".")
-        shown = f"{text} [{unit}]" if unit not in ("", "1") else text
-        kind = 'Literal["complete", "settled", "running", "diverged"]' if key == "status" else KINDS[kind]
-        line = field(name, f"{kind} | None" if is_optional else kind, shown)
-        groups.setdefault(group, []).append(line)
-    whole = groups.pop("")
+        shown = f"{meaning} [{unit}]" if unit not in ("", "1") else meaning
+        # What a word may be is said by the schema.
+        of_key = schema["properties"].pop(key, {"type": kind})
+        groups.setdefault(group, []).append(field(name, kind_of(of_key) + (" | None" if is_optional else ""), shown))
+    whole, rare = groups.pop(""), []
     for group, lines in groups.items():
         yield f'\n\nclass {group.capitalize()}Summary(TypedDict):\n    """What a summary says under ``{group}``."""\n\n'
         yield from lines
-    yield '\n\nclass Summary(TypedDict):\n    """The outcome of a run, as ``summary.json`` has it. Numbers that are not known are NaN.\n'
+    for name, of_name, is_rare in parts(schema):
+        kind = kind_of(of_name, "list[{}]", f"{name.capitalize()}Summary")
+        (rare if is_rare else whole).append(field(name, kind, plain(of_name["description"])))
+    yield '\n\nclass _Rare(TypedDict, total=False):\n    """What not every summary has."""\n\n'
+    yield from rare
+    yield '\n\nclass Summary(_Rare):\n    """The outcome of a run, as ``summary.json`` has it. Numbers that are not known are NaN.\n'
     yield SUMMARY_EXAMPLE
     yield from whole
     yield END
@@ -189,7 +171,7 @@ def summary() -> Iterator[str]:
 
 def text() -> str:
     """The whole file."""
-    return HEAD + "".join([*keywords(), "\n", REST, *summary()])
+    return HEAD + "".join([*keywords(), *summary()])
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 use crate::columns::mean_of;
 use crate::error::{Error, checked};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Fewest samples from which correlations are estimated.
@@ -12,7 +13,7 @@ const WINDOW: f64 = 5.0;
 const LARGEST_WINDOW: usize = 10;
 
 /// Integrated autocorrelation time of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AutocorrelationTime {
     /// tau = 1/2 + sum of the normalised autocorrelations, in samples; 1/2 for uncorrelated samples.
     pub time: f64,

@@ -2,6 +2,7 @@
 
 use crate::columns::{mean_and_scatter, mean_of};
 use crate::error::{Error, checked};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Fewest samples from which a mean is given an error.
@@ -10,7 +11,7 @@ const LEAST_SAMPLES: usize = 4;
 const LEAST_BLOCKS: usize = 8;
 
 /// Mean of a series with its statistical error.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Estimate {
     /// Mean of all samples.
     pub mean: f64,

@@ -1,6 +1,7 @@
 //! Quality of a scaling collapse: how well several curves lie on one.
 
 use crate::error::{Error, enough, ensure};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A point of a curve with the standard error of its ordinate.
@@ -24,7 +25,7 @@ pub struct Curve {
 }
 
 /// How well scaled curves lie on a common one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CollapseQuality {
     /// Mean squared distance S from the master curve in units of the errors: about 1 for a perfect collapse, the larger
     /// the worse. Meaningless without the overlap.

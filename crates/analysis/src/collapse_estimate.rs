@@ -12,16 +12,18 @@ use crate::collapse_fit::Collapse;
 use crate::error::{Error, ensure, same_length};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::uncertain::Uncertain;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// ln of the stiffness of the common curve: where its search begins, and its step.
 const STIFFNESS: (f64, f64) = (2.0, 2.0);
 /// Parameters of a scaling by the likelihood of one common curve, with intervals, and whether they can be trusted.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CollapseEstimate {
-    /// Parameters, in the order of the scaling.
+    /// Parameters, in the order of the scaling; intervals from the profile of the likelihood, infinite to a side that the
+    /// points leave open.
     pub parameters: Vec<Uncertain>,
-    /// Power of the curves' parameter in the correction that was allowed for, if one was.
+    /// Power of the curves' parameter in the correction to scaling that was allowed for, if one was.
     pub correction: Option<f64>,
     /// Quality S and overlap of the collapse there; S knows no correction.
     pub quality: CollapseQuality,
@@ -38,7 +40,7 @@ pub struct CollapseEstimate {
 }
 
 /// Several parameters of a collapse against values claimed for them, all at once.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct JointTest {
     /// Rise of -2 ln likelihood, minimal over all else, from the best to the values claimed.
     pub chi_squared: f64,

@@ -2,13 +2,14 @@
 
 use crate::bootstrap::Bootstrap;
 use crate::error::{Error, checked};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Fewest values: below this nothing can be told from one peak.
 const LEAST_VALUES: usize = 4;
 
 /// The dip of a sample with its significance.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DipTest {
     /// Largest distance of the empirical distribution from the nearest one with a single peak: 1/(2n) at least, 1/4 at
     /// most (two equal atoms).

@@ -6,10 +6,11 @@ use crate::law::Law;
 use crate::law_likelihood::{LawLikelihood, RunTable};
 use crate::scatter_law::largest_with_scatter;
 use crate::transition::Transition;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Evidence of the runs for one law.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// What the runs say for one law.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LawEvidence {
     /// The law.
     pub law: Law,

@@ -2,13 +2,14 @@
 
 use crate::columns::{jackknife_error, mean_and_scatter};
 use crate::error::{Error, check_replicate, checked, enough, same_length};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Fewest replicates: the variance must exist with one of them left out.
 const LEAST_REPLICATES: usize = 3;
 
 /// Mean and variance of independent values, with jackknife errors.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Moments {
     /// Mean.
     pub mean: f64,

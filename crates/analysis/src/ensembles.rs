@@ -7,10 +7,11 @@ use crate::law_likelihood::RunTable;
 use crate::lifetime::{LifetimeFit, fit_lifetime};
 use crate::survival::{RestrictedMoments, restricted_moments};
 use crate::transition::Transition;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Transition times of the runs at one width, estimated in three ways.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WidthEnsemble {
     /// Width w.
     pub width: f64,
@@ -25,7 +26,8 @@ pub struct WidthEnsemble {
     pub naive_mean: Option<f64>,
     /// Mean and variance of min(tau, `watched`): no distribution assumed. `None` below 3 transitions.
     pub restricted: Option<RestrictedMoments>,
-    /// Maximum likelihood under censoring; `None` where it has no estimate (no transition, no scatter).
+    /// Maximum likelihood under censoring, chi_tau its variance; `None` where it has no estimate (no transition, no
+    /// scatter).
     pub fit: Option<LifetimeFit>,
 }
 

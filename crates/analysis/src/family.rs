@@ -1,14 +1,16 @@
 //! Families of distributions of transition times, and their likelihood under censoring.
 
 use crate::numerics::gamma::{ln_gamma, ln_upper_gamma};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Logarithms of the smallest and the largest shape that a fit may find.
 pub(crate) const LN_SHAPE_BOUNDS: (f64, f64) = (-4.0, 9.2);
 
 /// Family of distributions of a transition time, each with a mean and at most one shape k.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(inline)]
 pub enum Family {
     /// `S = exp(-t/m)`: a jam begins by chance at a constant rate. Its relative variance is 1.
     Exponential,

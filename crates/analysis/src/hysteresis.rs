@@ -5,10 +5,11 @@ use crate::logistic::{FractionCrossing, Fractions};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::minimum::minimise_from_grid;
 use crate::uncertain::{Interval, Uncertain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Width of the hysteresis loop and whether there is one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Hysteresis {
     /// w_c: half of the runs started from rest jam.
     pub from_rest: FractionCrossing,

@@ -5,15 +5,17 @@ use crate::error::{Error, check_points, checked_positive, enough_places};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::linear::{LeastSquares, error_of, least_squares};
 use crate::uncertain::{Interval, Uncertain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Errors of the root within which an end of its interval is sought.
 const REACH: f64 = 1e3;
 
-/// `1/y = B (w_c - w) + C (w_c - w)^2` fitted to values with errors: a divergence with alpha = 1 exactly.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// 1/y = B (w_c - w) + C (w_c - w)^2 fitted to values with errors: a divergence with an exponent of 1 exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct InverseFit {
-    /// Critical width w_c, where 1/y falls through 0; intervals by the profile of chi^2, open where the points leave it so.
+    /// Critical width w_c, where 1/y falls through 0; intervals by the profile of chi^2, infinite where the points leave
+    /// them open.
     pub critical_width: Uncertain,
     /// B, positive; normal intervals.
     pub linear: Uncertain,

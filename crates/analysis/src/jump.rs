@@ -4,10 +4,11 @@ use crate::columns::distinct;
 use crate::error::{Error, check_points, checked, enough};
 use crate::line::fit_line;
 use crate::uncertain::Uncertain;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The two branches of the stationary flow rate at the critical width.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Jump {
     /// Jammed branch at w_c.
     pub upper: Uncertain,

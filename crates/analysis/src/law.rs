@@ -2,13 +2,15 @@
 
 use crate::family::Family;
 use crate::uncertain::Interval;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a quantity y grows as the width w rises toward the critical width w_c.
 ///
 /// Each is a straight line in ln y at a known w_c: `ln y = ln A + B x(w)`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(inline)]
 pub enum Law {
     /// `y = A (w_c - w)^-B`: a divergence as of a critical point or the end of a branch (a spinodal). Claim F2.
     Power,

@@ -7,13 +7,14 @@ use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::linear::{Cholesky, add_information, least_squares};
 use crate::numerics::minimum::minimise_from_grid;
 use crate::uncertain::{Interval, Uncertain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Tolerance of the minimum in ln(w_c - w).
 const TOLERANCE: f64 = 1e-6;
 
 /// A law fitted to values with errors at several widths.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LawFit {
     /// The law.
     pub law: Law,
@@ -190,7 +191,7 @@ pub fn fit_law(
 }
 
 /// A law fitted to the values at the largest widths alone.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct NearestFit {
     /// How many widths, the largest ones.
     pub widths: usize,

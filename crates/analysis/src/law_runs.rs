@@ -6,11 +6,12 @@ use crate::law::Law;
 use crate::law_likelihood::{LawLikelihood, RunTable};
 use crate::transition::Transition;
 use crate::uncertain::Uncertain;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// A law of the mean transition time fitted to the runs at all widths.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LawRunsFit {
     /// The law of the mean.
     pub law: Law,
@@ -55,12 +56,12 @@ impl LawRunsFit {
     }
 }
 
-/// A fit to the runs in one window of widths.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// A law fitted to the runs within a window of widths.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WindowRunsFit {
-    /// Least width in the window.
+    /// Smallest width of the window.
     pub least: f64,
-    /// Largest width in the window.
+    /// Largest width of the window.
     pub largest: f64,
     /// The fit.
     pub fit: LawRunsFit,

@@ -7,6 +7,7 @@ use crate::numerics::minimum::minimise;
 use crate::survival::times;
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Tolerance of a maximum in the logarithm of mean or shape.
@@ -15,7 +16,7 @@ const TOLERANCE: f64 = 1e-6;
 const FARTHEST: f64 = 40.0;
 
 /// A distribution fitted to the transition times of one ensemble.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LifetimeFit {
     /// Family of the distribution.
     pub family: Family,

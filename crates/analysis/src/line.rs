@@ -6,10 +6,11 @@ use crate::numerics::gamma::{chi_squared_tail, two_sided_tail};
 use crate::numerics::linear::{LeastSquares, error_of, least_squares};
 use crate::numerics::student::{quantile, two_sided_tail as student_tail};
 use crate::uncertain::{Interval, NARROW_TAIL, Uncertain, WIDE_TAIL};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A straight line through points with errors.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LineFit {
     /// Value at x = 0.
     pub intercept: Uncertain,
@@ -26,7 +27,7 @@ pub struct LineFit {
 }
 
 /// A parabola through points with errors, beside the straight line.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CurveFit {
     /// Value of the parabola at x = 0.
     pub constant: Uncertain,
@@ -47,7 +48,7 @@ pub struct CurveFit {
 }
 
 /// A straight line through points that scatter about it by more than their errors.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScatteredLine {
     /// The line; its errors are those of points and scatter, the intervals of intercept and slope Student's.
     pub line: LineFit,

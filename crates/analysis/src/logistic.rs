@@ -4,13 +4,14 @@ use crate::columns::by_width;
 use crate::error::{Error, checked, enough_places, ensure, same_length};
 use crate::numerics::minimum::{Minimum, minimise, minimise_from_grid};
 use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Places in the grid of the width sought.
 const PLACES: usize = 121;
 
 /// The width at which the fraction of jammed runs falls through one half.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FractionCrossing {
     /// The width, with intervals by profile likelihood; where the runs are separated the bracket that they leave.
     pub width: Uncertain,

@@ -1,6 +1,7 @@
 //! One peak or two: histogram, and a mixture of two normal distributions against one.
 
 use crate::error::{Error, checked, enough, ensure};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -25,7 +26,7 @@ pub struct Histogram {
 }
 
 /// One peak of a mixture.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Peak {
     /// Fraction of the values that belong to it.
     pub weight: f64,
@@ -38,7 +39,7 @@ pub struct Peak {
 }
 
 /// Mixture of two normal distributions against a single one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TwoPeaks {
     /// Mean and deviation of all values as one peak.
     pub single: Peak,
@@ -46,7 +47,7 @@ pub struct TwoPeaks {
     pub lower: Peak,
     /// Peak at the larger mean.
     pub upper: Peak,
-    /// Schwarz's criterion of one peak minus the criterion of two: positive for two peaks, beyond 10 very clearly so.
+    /// Schwarz's criterion of one peak less that of two: positive for two peaks, beyond 10 very clearly so.
     pub criterion_gain: f64,
     /// Distance of the peaks over their widths, sqrt(2) |m_2 - m_1|/sqrt(s_1^2 + s_2^2): two peaks can be seen beyond
     /// 2.

@@ -9,6 +9,7 @@ use crate::numerics::linear::{Cholesky, curvature, error_of};
 use crate::numerics::simplex::{Lowest, nelder_mead};
 use crate::transition::Transition;
 use crate::uncertain::Uncertain;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// First steps in ln(w_c - w), ln k and q.
@@ -20,7 +21,7 @@ const EVALUATIONS: usize = 600;
 const SLACK: f64 = 1e-3;
 
 /// Power laws of the mean transition time and of its relative variance, fitted to the runs at all widths.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ScatterLawFit {
     /// Critical width w_c; intervals normal in ln(w_c - largest width that saw a transition).
     pub critical_width: Uncertain,
@@ -40,7 +41,7 @@ pub struct ScatterLawFit {
     pub chance_probability: f64,
     /// The same if chi_tau/tau^2 has one value at all widths, q = 0.
     pub constant_probability: f64,
-    /// The same if chi_tau/tau^2 ~ 1/(w_c - w), q = 1, as the claims F2 with F4 imply.
+    /// The same if chi_tau/tau^2 ~ 1/(w_c - w), q = 1.
     pub inverse_probability: f64,
     /// Runs with an observed transition.
     pub observed: usize,

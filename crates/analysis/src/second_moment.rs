@@ -4,6 +4,7 @@ use crate::bootstrap::{Bootstrap, bootstrap_errors};
 use crate::columns::{mean_and_scatter, mean_of};
 use crate::error::{Error, check_replicate, enough};
 use crate::uncertain::Uncertain;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Fewest runs at a time from which a variance is estimated.
@@ -25,7 +26,7 @@ pub enum AfterEnd {
 }
 
 /// Mean and variance of j = J/Jmax across an ensemble at one time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SecondMoment {
     /// Mean `<j>`.
     pub mean: f64,
@@ -36,7 +37,7 @@ pub struct SecondMoment {
 }
 
 /// Peak over time of the second moment.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MomentPeak {
     /// Position of the peak in the series, from 0, with bootstrap errors.
     pub index: Uncertain,

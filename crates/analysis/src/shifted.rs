@@ -5,13 +5,14 @@ use crate::lifetime::group_of;
 use crate::survival::times;
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Probabilities of the narrow and of the wide interval.
 const LEVELS: [f64; 2] = [0.682_689_492_137_086, 0.95];
 
 /// Shifted exponential distribution fitted to the transition times of one ensemble.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ShiftedExponentialFit {
     /// Dead time t_0 before which no transition happens, corrected for its bias; 0 at least.
     pub dead_time: Uncertain,

@@ -2,13 +2,14 @@
 
 use crate::blocks::{Estimate, mean_with_error};
 use crate::error::{Error, checked};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Fewest samples: both halves must be able to reach a plateau of their error.
 const LEAST_SAMPLES: usize = 16;
 
 /// Comparison of the two halves of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Stationarity {
     /// Mean of the first half.
     pub first: Estimate,

@@ -4,10 +4,11 @@ use crate::columns::jackknife_error;
 use crate::error::{Error, enough, enough_observed, ensure};
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The survival curve just after one transition time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SurvivalStep {
     /// Time of the step, in the unit of the input.
     pub time: f64,
@@ -44,7 +45,7 @@ pub struct Survival {
 }
 
 /// Mean and variance of min(tau, horizon).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RestrictedMoments {
     /// Time at which every longer transition time is cut off.
     pub horizon: f64,

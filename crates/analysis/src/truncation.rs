@@ -4,6 +4,7 @@ use crate::blocks::{Estimate, mean_with_error};
 use crate::columns::mean_of;
 use crate::error::{Error, checked, ensure};
 use crate::stationarity::{Stationarity, stationarity};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Samples in a batch: single ones would end the transient at a chance fluctuation.
@@ -14,7 +15,7 @@ const LEAST_SAMPLES: usize = 32;
 const LIMIT: f64 = 3.0;
 
 /// Mean of the stationary part of a series.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StationaryMean {
     /// Samples left out at the beginning.
     pub discarded: usize,

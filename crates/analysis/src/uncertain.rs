@@ -3,6 +3,7 @@
 use crate::columns::mean_and_scatter;
 use crate::numerics::minimum::crossing;
 use crate::numerics::student;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Standard deviations of the narrow interval: 68.27 per cent.
@@ -15,7 +16,7 @@ pub(crate) const NARROW_TAIL: f64 = 0.158_655_253_931_457;
 pub(crate) const WIDE_TAIL: f64 = 0.025;
 
 /// Confidence interval; a side that the data leave open is infinite.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Interval {
     /// Lower end.
     pub lower: f64,
@@ -65,7 +66,7 @@ impl Interval {
 ///
 /// The intervals need not be symmetric, nor the error half of the narrow one: each estimator states whether they come
 /// from a profile likelihood, a bootstrap or the normal approximation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Uncertain {
     /// The estimate.
     pub value: f64,

@@ -463,12 +463,6 @@ impl Configuration {
     }
 }
 
-/// The JSON schema of all keys.
-#[pyfunction]
-pub(crate) fn schema() -> String {
-    peristalsis_configuration::schema().to_string()
-}
-
 /// Names of the presets.
 ///
 /// Returns
@@ -484,15 +478,4 @@ pub(crate) fn schema() -> String {
 #[pyfunction]
 pub(crate) fn presets() -> Vec<&'static str> {
     PRESETS.iter().map(|preset| preset.name).collect()
-}
-
-/// Quantities of a summary: (key, unit, meaning, kind, whether it may be missing), which the types of Python are made of.
-#[pyfunction]
-pub(crate) fn summary_keys() -> Vec<(String, &'static str, &'static str, String, bool)> {
-    let keys = peristalsis_run::summary_keys().into_iter();
-    keys.map(|it| {
-        let kind = format!("{:?}", it.column.kind).to_lowercase();
-        (it.key, it.column.unit, it.column.text, kind, it.is_optional)
-    })
-    .collect()
 }

@@ -14,6 +14,7 @@ mod load;
 mod newtonian;
 mod onlooker;
 mod run;
+mod schema;
 mod study;
 mod table;
 mod value;
@@ -49,7 +50,7 @@ mod _core {
     #[pymodule_export]
     use crate::command::command;
     #[pymodule_export]
-    use crate::configuration::{Configuration, presets, schema, summary_keys};
+    use crate::configuration::{Configuration, presets};
     #[pymodule_export]
     use crate::error::{
         AnalysisError, ConfigurationError, DivergedError, DoesNotFitError, SnapshotError,
@@ -65,6 +66,8 @@ mod _core {
     use crate::onlooker::{Onlooker, page};
     #[pymodule_export]
     use crate::run::Run;
+    #[pymodule_export]
+    use crate::schema::{results_schema, schema, summary_keys, summary_schema};
     #[pymodule_export]
     use crate::study::{Study, store_counts, store_export, store_rows};
     #[pymodule_export]

@@ -83,6 +83,31 @@ fn rows(array: &PyReadonlyArray2<'_, f64>) -> Vec<DVec3> {
     rows.map(|row| DVec3::new(row[0], row[1], row[2])).collect()
 }
 
+/// How a run stands. In Python one that may go on has not been interrupted.
+#[derive(serde::Serialize, schemars::JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Standing {
+    /// At its end.
+    Complete,
+    /// Ended before by its own rule.
+    Settled,
+    /// It may go on.
+    Running,
+    /// A grain moved too far in one step.
+    Diverged,
+}
+
+impl From<Status> for Standing {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::Complete => Self::Complete,
+            Status::Settled => Self::Settled,
+            Status::Interrupted => Self::Running,
+            Status::Diverged => Self::Diverged,
+        }
+    }
+}
+
 /// A parameter of the drive by its name.
 fn scheduled(name: &str) -> PyResult<ScheduledParameter> {
     match name {
@@ -401,12 +426,9 @@ impl Run {
             };
             Summary::of(run, status, divergence)
         });
-        let is_going_on = summary.status == Status::Interrupted;
+        let standing = Standing::from(summary.status);
         let summary = pythonize(py, &summary)?;
-        if is_going_on {
-            // In Python a run that may go on has not been interrupted.
-            summary.set_item("status", "running")?;
-        }
+        summary.set_item("status", pythonize(py, &standing)?)?;
         Ok(summary)
     }
 }

@@ -618,15 +618,19 @@ fn the_full_designs_allow_verdicts() {
         for point in plan.points() {
             let configuration = &point.configuration;
             let late = configuration.observe.late_fraction * configuration.run.periods.unwrap();
-            assert!(late >= 50.0, "{name}: {late} periods");
             let rate = configuration.drive.strain_rate;
+            // Shorter runs may be there besides.
+            let counts = usize::from(late >= 50.0);
             match rates.iter_mut().find(|known| known.0 == rate) {
-                Some(known) => known.1 += 1,
-                None => rates.push((rate, 1)),
+                Some(known) => known.1 += counts,
+                None => rates.push((rate, counts)),
             }
         }
-        assert!(specification.replicates >= 5 && rates.len() >= 3, "{name}");
         // Two states of each force.
-        assert!(rates.iter().all(|rate| rate.1 >= 12), "{name}: {rates:?}");
+        let whole = rates.iter().filter(|rate| rate.1 >= 12).count();
+        assert!(
+            specification.replicates >= 5 && whole >= 3,
+            "{name}: {rates:?}"
+        );
     }
 }

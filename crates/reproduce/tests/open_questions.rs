@@ -476,7 +476,11 @@ fn the_law_of_the_critical_width_is_told_from_others() {
     let known = tubes(5, by_stiffness);
     let mut creeps = tubes(1, |_, _| 0.2);
     creeps.set("transition_time_70", f64::NAN);
-    let again = [("softness", &known), ("restitution", &known), ("radius", &creeps)];
+    let again = [
+        ("softness", &known),
+        ("restitution", &known),
+        ("radius", &creeps),
+    ];
     assert_says(
         &examine("Q12", &again).summary,
         "5 of 5 and 0 of 0 by the stiffness of the wall",

@@ -44,7 +44,7 @@ pub use si::SiEstimate;
 pub use stopping::Stopping;
 pub use summary::{
     Discharge, MixedGrains, Pumping, RowColumn, SegregatedSizes, Status, Summary, SummaryKey, Wear,
-    label, row_columns, set_by, summary_keys,
+    label, row_columns, set_by, summary_keys, summary_schema,
 };
 pub use tables::{
     contacts_table, gathered, profile_table, snapshot_table, timeseries_table, waves_table,

@@ -4,6 +4,8 @@ use peristalsis_physics::method::InitialState;
 use peristalsis_physics::sizes::Sizes;
 use rand_chacha::ChaCha8Rng;
 use rand_core::Rng;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Largest mean overlap of touching grains, in units of the largest diameter, that still counts as fitting.
 pub const LARGEST_MEAN_OVERLAP: f64 = 0.5;
@@ -26,7 +28,7 @@ pub struct Packing {
 }
 
 /// How the packing came out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PackingReport {
     /// Grains that random insertion placed without overlap; the others were grown into place.
     pub inserted: usize,

@@ -1,4 +1,4 @@
-"""Types of keywords and of summaries. Made by scripts/python_types.py from the schema and the table of quantities."""
+"""Types of keywords and of summaries. Made by scripts/python_types.py from schemas and the table of quantities."""
 
 from __future__ import annotations
 
@@ -433,17 +433,8 @@ class Keywords(TypedDict, total=False):
     control. (Unit: d.)"""
 
 
-class ThresholdTime(TypedDict):
-    """The transition as another threshold sees it."""
-
-    threshold: float
-    """J/Jmax whose crossing counts."""
-    time: float | None
-    """tau [t]; `None` where there was no transition."""
-
-
-class Packing(TypedDict):
-    """How the grains were placed."""
+class PackingReport(TypedDict):
+    """How the packing came out."""
 
     inserted: int
     """Grains that random insertion placed without overlap; the others were grown into place."""
@@ -457,8 +448,30 @@ class Packing(TypedDict):
     """Elastic energy stored [m d^2/t^2]."""
 
 
+class ThresholdTime(TypedDict):
+    """The transition as another threshold sees it."""
+
+    threshold: float
+    """J/Jmax whose crossing counts."""
+    time: float | None
+    """tau [t]; `None` where there was no transition."""
+
+
+class TrajectoryReport(TypedDict):
+    """The part of a trajectory that was written."""
+
+    files: list[str]
+    """The files that readers open; bytes of a name that are not Unicode are replaced by marks."""
+    frames: int
+    """Frames."""
+    interval_steps: int
+    """Steps between two frames."""
+    bytes: int
+    """Bytes of all files."""
+
+
 class WarningEntry(TypedDict):
-    """A doubt about the run."""
+    """A doubt about a run that can be computed but may not mean what was intended."""
 
     key: str
     """The key to look at."""
@@ -576,7 +589,14 @@ class SiSummary(TypedDict):
     """time in SI [s]"""
 
 
-class Summary(TypedDict):
+class _Rare(TypedDict, total=False):
+    """What not every summary has."""
+
+    trajectory: TrajectoryReport
+    """The trajectory that was written; only where there is one."""
+
+
+class Summary(_Rare):
     """The outcome of a run, as ``summary.json`` has it. Numbers that are not known are NaN.
 
     Examples
@@ -764,17 +784,17 @@ class Summary(TypedDict):
     """revision of its source"""
     pumping: PumpingSummary | None
     """Pumping against a body force; `None` without one."""
-    open: OpenSummary | None
-    """What passes through an open tube; `None` of a periodic one."""
     throat: ThroatSummary
     """About a fifth of the wavelength, where the tube is narrowest."""
     belly: BellySummary
     """About a fifth of the wavelength, where it is widest."""
+    open: OpenSummary | None
+    """What passes through an open tube; `None` of a periodic one."""
     si: SiSummary | None
-    """Quantities in SI; `None` without the table ``units``."""
+    """Quantities in SI; `None` without the table `units`."""
     transition_times: list[ThresholdTime]
     """The transition as other thresholds see it."""
-    packing: Packing
+    packing: PackingReport
     """How the grains were placed."""
     message: str | None
     """Why the run diverged, where it did."""

@@ -18,7 +18,9 @@ pub use discharge::Discharge;
 use late::{ForceOfContacts, axial_dispersion, error_of, residence_time, wall_torque};
 pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;
-pub use written::{RowColumn, SummaryKey, label, row_columns, set_by, summary_keys};
+pub use written::{
+    RowColumn, SummaryKey, label, row_columns, set_by, summary_keys, summary_schema,
+};
 
 use crate::assemble::newtonian_reference;
 use crate::recorder::THRESHOLDS;

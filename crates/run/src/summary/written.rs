@@ -3,14 +3,19 @@
 use std::sync::LazyLock;
 
 use peristalsis_configuration::Configuration;
+use peristalsis_engine::initial::PackingReport;
 use peristalsis_formats::ValueKind;
 use peristalsis_observe::{Quantity, Value};
-use serde::ser::{Serialize, SerializeMap, Serializer};
+use schemars::generate::SchemaSettings;
+use schemars::{JsonSchema, Schema};
+use serde::{Serialize, Serializer};
 
 use super::Summary;
 use super::table::{QUANTITIES, RunQuantity, Source};
 use crate::recorder::THRESHOLDS;
 use crate::tables::kind;
+use crate::trajectory::TrajectoryReport;
+use crate::warnings::Warning;
 
 /// A column of the rows of studies.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -159,7 +164,11 @@ impl Summary {
 }
 
 /// Keys and values as an object.
-struct Object(Vec<(String, Value)>);
+#[derive(JsonSchema)]
+#[schemars(inline)]
+struct Object(
+    #[schemars(with = "serde_json::Map<String, serde_json::Value>")] Vec<(String, Value)>,
+);
 
 impl Serialize for Object {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -168,44 +177,77 @@ impl Serialize for Object {
 }
 
 /// The transition as another threshold sees it.
-#[derive(serde::Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ThresholdTime {
     /// J/Jmax whose crossing counts.
     threshold: f64,
-    /// tau \[t\], where there was a transition.
+    /// tau \[t\]; `None` where there was no transition.
     time: Option<f64>,
+}
+
+/// A summary as an object: the quantities of its table, those below a name of their own, and what is no single number.
+#[derive(Serialize, JsonSchema)]
+#[schemars(rename = "Summary")]
+struct Written<'a> {
+    #[serde(flatten)]
+    #[schemars(skip)]
+    quantities: Object,
+    /// Pumping against a body force; `None` without one.
+    pumping: Option<Object>,
+    /// About a fifth of the wavelength, where the tube is narrowest.
+    throat: Object,
+    /// About a fifth of the wavelength, where it is widest.
+    belly: Object,
+    /// What passes through an open tube; `None` of a periodic one.
+    open: Option<Object>,
+    /// Quantities in SI; `None` without the table `units`.
+    si: Option<Object>,
+    /// The transition as other thresholds see it.
+    transition_times: Vec<ThresholdTime>,
+    /// How the grains were placed.
+    packing: &'a PackingReport,
+    /// Why the run diverged, where it did.
+    message: Option<&'a str>,
+    /// Faults of an elastic wall: when, where, and the likely cause.
+    wall_diagnosis: &'a [String],
+    /// What looks doubtful.
+    warnings: &'a [Warning],
+    /// The trajectory that was written; only where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "TrajectoryReport")]
+    trajectory: Option<&'a TrajectoryReport>,
 }
 
 impl Serialize for Summary {
     /// As an object; numbers that are missing are `null` in JSON.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let group = |name| Object(self.entries(name));
         let times = THRESHOLDS.into_iter().zip(self.transition_times);
         let times = times.map(|(threshold, time)| ThresholdTime { threshold, time });
-        let times: Vec<ThresholdTime> = times.collect();
-        let mut object = serializer.serialize_map(None)?;
-        for (key, value) in self.entries("") {
-            object.serialize_entry(&key, &value)?;
-        }
-        for (group, applies) in [
-            ("pumping", self.pumping.is_some()),
-            ("throat", true),
-            ("belly", true),
-            ("open", self.discharge.is_some()),
-            ("si", self.configuration.units.is_some()),
-        ] {
-            let entries = applies.then(|| Object(self.entries(group)));
-            object.serialize_entry(group, &entries)?;
-        }
-        object.serialize_entry("transition_times", &times)?;
-        object.serialize_entry("packing", &self.packing)?;
-        object.serialize_entry("message", &self.message)?;
-        object.serialize_entry("wall_diagnosis", &self.wall_diagnosis)?;
-        object.serialize_entry("warnings", &self.warnings)?;
-        if let Some(trajectory) = &self.trajectory {
-            object.serialize_entry("trajectory", trajectory)?;
-        }
-        object.end()
+        let written = Written {
+            quantities: group(""),
+            pumping: self.pumping.is_some().then(|| group("pumping")),
+            throat: group("throat"),
+            belly: group("belly"),
+            open: self.discharge.is_some().then(|| group("open")),
+            si: self.configuration.units.is_some().then(|| group("si")),
+            transition_times: times.collect(),
+            packing: &self.packing,
+            message: self.message.as_deref(),
+            wall_diagnosis: &self.wall_diagnosis,
+            warnings: &self.warnings,
+            trajectory: self.trajectory.as_ref(),
+        };
+        written.serialize(serializer)
     }
+}
+
+/// The JSON schema of what a summary holds besides [`summary_keys`]: an object of theirs has no properties here.
+pub fn summary_schema() -> Schema {
+    let settings = SchemaSettings::draft2020_12().for_serialize();
+    settings
+        .into_generator()
+        .into_root_schema_for::<Written<'_>>()
 }
 
 #[cfg(test)]

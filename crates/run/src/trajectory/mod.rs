@@ -34,7 +34,7 @@ pub struct Trajectory {
 }
 
 /// The part of a trajectory that was written.
-#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 pub struct TrajectoryReport {
     /// The files that readers open; bytes of a name that are not Unicode are replaced by marks.
     #[serde(serialize_with = "as_text")]

@@ -1,7 +1,8 @@
 //! A warning.
 
 /// A doubt about a run that can be computed but may not mean what was intended.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, schemars::JsonSchema)]
+#[schemars(rename = "WarningEntry")]
 pub struct Warning {
     /// The key to look at.
     pub key: &'static str,

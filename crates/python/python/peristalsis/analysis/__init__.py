@@ -19,54 +19,48 @@ The quality S of Houdayer & Hartmann, Phys. Rev. B 70, 014418 (2004): near 1 whe
 A collapse must keep curves overlapping, so that a search cannot win by pulling them apart.
 """
 
-from ._collapse import Collapse, CollapseEstimate, CollapseQuality, CollapseResult, JointTest
-from ._columns import Interval, Uncertain
-from ._evidence import LawEvidence, compare_laws, compare_laws_with_scatter
-from ._inverse import InverseFit, fit_inverse_line, fit_inverse_parabola
-from ._laws import (
-    LawRunsFit,
-    ScatterLawFit,
-    WidthEnsemble,
-    WindowRunsFit,
-    ensembles_by_width,
-    fit_law_to_runs,
-    fit_law_to_runs_in_windows,
-    fit_law_with_scatter,
-)
-from ._points import (
+from ._collapse import Collapse, CollapseResult
+from ._evidence import compare_laws, compare_laws_with_scatter
+from ._inverse import fit_inverse_line, fit_inverse_parabola
+from ._laws import ensembles_by_width, fit_law_to_runs, fit_law_to_runs_in_windows, fit_law_with_scatter
+from ._order import dip_test, fraction_crossing, hysteresis, jump_height, two_peaks
+from ._points import fit_law, fit_law_to_nearest, fit_line, fit_line_to_scatter, fit_parabola, power_exponent
+from ._results import (
+    AutocorrelationTime,
+    CollapseEstimate,
+    CollapseQuality,
     CurveFit,
-    LawFit,
-    LineFit,
-    NearestFit,
-    ScatteredLine,
-    fit_law,
-    fit_law_to_nearest,
-    fit_line,
-    fit_line_to_scatter,
-    fit_parabola,
-    power_exponent,
-)
-from ._order import (
     DipTest,
+    Estimate,
     FractionCrossing,
     Hysteresis,
+    Interval,
+    InverseFit,
+    JointTest,
     Jump,
-    Peak,
-    TwoPeaks,
-    dip_test,
-    fraction_crossing,
-    hysteresis,
-    jump_height,
-    two_peaks,
-)
-from ._series import (
-    AutocorrelationTime,
-    Estimate,
+    LawEvidence,
+    LawFit,
+    LawRunsFit,
+    LifetimeFit,
+    LineFit,
     MomentPeak,
     Moments,
+    NearestFit,
+    Peak,
+    RestrictedMoments,
+    ScatterLawFit,
+    ScatteredLine,
     SecondMoment,
+    ShiftedExponentialFit,
     Stationarity,
     StationaryMean,
+    SurvivalStep,
+    TwoPeaks,
+    Uncertain,
+    WidthEnsemble,
+    WindowRunsFit,
+)
+from ._series import (
     autocorrelation_time,
     ensemble_moments,
     mean_with_error,
@@ -76,11 +70,7 @@ from ._series import (
     stationary_mean,
 )
 from ._transitions import (
-    LifetimeFit,
-    RestrictedMoments,
-    ShiftedExponentialFit,
     Survival,
-    SurvivalStep,
     TransitionTime,
     fit_lifetime,
     fit_shifted_exponential,

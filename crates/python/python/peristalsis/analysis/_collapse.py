@@ -11,7 +11,8 @@ import numpy as np
 from .. import _core
 from .._arrays import Array
 from .._given import of_kind
-from ._columns import Interval, Numbers, Uncertain, columns, pair, result
+from ._columns import Numbers, columns, pair, result
+from ._results import CollapseEstimate, CollapseQuality, Interval, JointTest, Uncertain
 
 #: Scalings by name.
 _SCALINGS = ("finite_size", "critical_line", "critical_each")
@@ -19,87 +20,6 @@ _SCALINGS = ("finite_size", "critical_line", "critical_each")
 Places = Sequence["Uncertain | float | tuple[float, float] | None"]
 #: ``x, y, error`` scaled, from ``(parameters, p, x, y, error)``.
 Scaling = Callable[[list[float], float, float, float, float], tuple[float, float, float]]
-
-
-@dataclass(frozen=True)
-class CollapseQuality:
-    """How well scaled curves lie on a common one.
-
-    Attributes
-    ----------
-    quality : float
-        Mean squared distance S from the master curve in units of the errors: about 1 for a perfect collapse, the
-        larger the worse. Meaningless without the overlap.
-    overlap : float
-        Fraction of all points that lie within the range of another curve, and so are compared at all. Points that the
-        scaling sends to infinity, such as those beyond the critical width, count among all.
-    compared : int
-        Points compared.
-    is_connected : bool
-        Whether the curves hang together: each is compared with another, and no group stands apart from the rest.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from peristalsis import analysis
-    >>> x = np.linspace(-0.5, 0.5, 21)
-    >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
-    >>> collapse = analysis.Collapse(curves, "finite_size")
-    >>> found = collapse.quality([0.5, 1.0, 0.0])
-    >>> found.quality < 0.1, found.is_connected, found.compared
-    (True, True, 51)
-    """
-
-    quality: float
-    overlap: float
-    compared: int
-    is_connected: bool
-
-
-@dataclass(frozen=True)
-class CollapseEstimate:
-    """Parameters of a scaling with intervals, and whether they can be trusted.
-
-    Attributes
-    ----------
-    parameters : tuple[Uncertain, ...]
-        Parameters, in the order of the scaling; intervals from the profile of the likelihood, infinite to a side that the
-        points leave open.
-    correction : float or None
-        Power of the curves' parameter in the correction to scaling that was allowed for, if one was.
-    quality : CollapseQuality
-        Quality S and overlap of the collapse there; S knows no correction.
-    stretch : float
-        Factor by which the errors are stretched, 1 at least: how much more the points scatter than their errors say.
-    agreeing : int
-        Searches that ended here, of all.
-    starts : int
-        Searches made.
-    trusted : bool
-        Whether there is no doubt.
-    doubts : tuple[str, ...]
-        Reasons not to trust the parameters or their errors, in words.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from peristalsis import analysis
-    >>> x = np.linspace(-0.5, 0.5, 21)
-    >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
-    >>> collapse = analysis.Collapse(curves, "finite_size")
-    >>> estimate = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=2).estimate
-    >>> [round(parameter.value, 1) for parameter in estimate.parameters], estimate.starts
-    ([0.5, 1.0, 0.0], 2)
-    """
-
-    parameters: tuple[Uncertain, ...]
-    correction: float | None
-    quality: CollapseQuality
-    stretch: float
-    agreeing: int
-    starts: int
-    trusted: bool
-    doubts: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -149,31 +69,6 @@ class CollapseResult:
     overlap: float
     leave_one_out: Array
     estimate: CollapseEstimate
-
-
-@dataclass(frozen=True)
-class JointTest:
-    """Several parameters of a collapse against values claimed for them, all at once.
-
-    Attributes
-    ----------
-    chi_squared : float
-        Rise of -2 ln likelihood, minimal over all else, from the best to the values claimed.
-    degrees_of_freedom : int
-        Parameters compared.
-    probability : float
-        Probability of a rise at least as large if the values claimed are right.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> analysis.JointTest(chi_squared=5.99, degrees_of_freedom=2, probability=0.05).degrees_of_freedom
-    2
-    """
-
-    chi_squared: float
-    degrees_of_freedom: int
-    probability: float
 
 
 class Collapse:

@@ -1,9 +1,9 @@
-"""Columns of numbers as the estimators take them, and numbers with their errors as they answer them."""
+"""Columns of numbers as the estimators take them, and their answers as objects."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, get_args, get_type_hints
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._arrays import Array, Runs, RunTable
 from .._core import AnalysisError
+from ._results import Uncertain
 
 Numbers = npt.ArrayLike
 Result = TypeVar("Result")
@@ -112,59 +113,3 @@ def _value(hint: Any, value: Any) -> Any:
     if isinstance(value, list):
         return tuple(result(kinds[0], item) for item in value)
     return result(kinds[0], value)
-
-
-@dataclass(frozen=True)
-class Interval:
-    """Confidence interval; a side that the data leave open is infinite.
-
-    Attributes
-    ----------
-    lower : float
-        Lower end.
-    upper : float
-        Upper end.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> analysis.Interval(0.5, 1.5).upper
-    1.5
-    """
-
-    lower: float
-    upper: float
-
-
-@dataclass(frozen=True)
-class Uncertain:
-    """A number with its standard error and its confidence intervals.
-
-    Attributes
-    ----------
-    value : float
-        The estimate.
-    error : float
-        Its standard error (one standard deviation).
-    interval_68 : Interval
-        Interval that covers the truth in 68.27 per cent of repetitions.
-    interval_95 : Interval
-        Interval that covers the truth in 95 per cent of repetitions.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> slope = analysis.fit_line([0, 1, 2], [1, 3, 5], [0.1, 0.1, 0.1]).slope
-    >>> print(slope)
-    2 +- 0.071
-    >>> slope.interval_68.lower < 2.0 < slope.interval_68.upper
-    True
-    """
-
-    value: float
-    error: float
-    interval_68: Interval
-    interval_95: Interval
-
-    def __str__(self) -> str:
-        return f"{self.value:.6g} +- {self.error:.2g}"

@@ -3,54 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
 from .. import _core
 from ._columns import Numbers, law_of, result, run_table
+from ._results import LawEvidence
 
 if TYPE_CHECKING:
     from ._columns import _Family, _Law
-
-
-@dataclass(frozen=True)
-class LawEvidence:
-    """What the runs say for one law.
-
-    Attributes
-    ----------
-    law : str | dict[str, Any]
-        The law.
-    log_likelihood : float
-        Largest log-likelihood.
-    akaike : float
-        Akaike's criterion 2 p - 2 ln L.
-    excess : float
-        Akaike's criterion minus the criterion of the best law: beyond some 10 the law has next to no support.
-    weight : float
-        Akaike weight exp(-excess/2) over the sum of all laws compared: how probable it is to be the nearest of them.
-    critical_width : float | None
-        Best w_c, infinite where the law does best as an exponential one; `None` for a law without w_c.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from peristalsis import analysis
-    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
-    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
-    >>> evidence = analysis.compare_laws(["power", "exponential"], width, time, family="exponential")
-    >>> round(sum(law.weight for law in evidence), 6)
-    1.0
-    """
-
-    law: str | dict[str, Any]
-    log_likelihood: float
-    akaike: float
-    excess: float
-    weight: float
-    critical_width: float | None
 
 
 def compare_laws(

@@ -2,48 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 
 from .. import _core
-from ._columns import Numbers, Uncertain, columns, result
-
-
-@dataclass(frozen=True)
-class InverseFit:
-    """1/y = B (w_c - w) + C (w_c - w)^2 fitted to values with errors: a divergence with an exponent of 1 exactly.
-
-    Attributes
-    ----------
-    critical_width : Uncertain
-        w_c, where 1/y falls through 0; intervals by the profile of chi^2, infinite where the points leave them open.
-    linear : Uncertain
-        B, positive; normal intervals.
-    quadratic : Uncertain or None
-        C; `None` for a line.
-    chi_squared : float
-        Sum of the squared deviations of 1/y in units of their errors.
-    degrees_of_freedom : int
-        Points less free parameters.
-    probability : float
-        Probability of a chi^2 at least as large if the law and the errors are right; 1 without degrees of freedom.
-    explained : float
-        R^2: the part of the weighted scatter of 1/y that the law accounts for.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> fit = analysis.fit_inverse_line([2, 2.5, 2.75], [2, 4, 8], [0.1, 0.2, 0.4])     # tau = 2/(3 - w)
-    >>> round(fit.critical_width.value, 6), round(fit.linear.value, 6), fit.quadratic, fit.degrees_of_freedom
-    (3.0, 0.5, None, 1)
-    """
-
-    critical_width: Uncertain
-    linear: Uncertain
-    quadratic: Uncertain | None
-    chi_squared: float
-    degrees_of_freedom: int
-    probability: float
-    explained: float
+from ._columns import Numbers, columns, result
+from ._results import InverseFit
 
 
 def fit_inverse_line(width: Numbers, value: Numbers, error: Numbers) -> InverseFit:

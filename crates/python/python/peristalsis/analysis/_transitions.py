@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from .. import _core
 from .._arrays import Array
-from ._columns import Numbers, Uncertain, reals, result, runs
+from ._columns import Numbers, reals, result, runs
+from ._results import LifetimeFit, RestrictedMoments, ShiftedExponentialFit, SurvivalStep, Uncertain
 
 if TYPE_CHECKING:
     from ._columns import _Family
@@ -36,136 +37,6 @@ class TransitionTime:
 
     time: float
     observed: bool
-
-
-@dataclass(frozen=True)
-class SurvivalStep:
-    """The survival curve just after one transition time.
-
-    Attributes
-    ----------
-    time : float
-        Time of the step, in the unit of the input.
-    at_risk : int
-        Runs watched up to this time without a transition before it.
-    transitions : int
-        Runs with their transition at this time.
-    survival : Uncertain
-        Probability S of no transition up to and including this time, with Greenwood's error and log-log intervals.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> step = analysis.Survival([1.0, 2.0, 3.0], [True, False, True]).steps[0]
-    >>> step.time, step.at_risk, round(step.survival.value, 3)
-    (1.0, 3, 0.667)
-    """
-
-    time: float
-    at_risk: int
-    transitions: int
-    survival: Uncertain
-
-
-@dataclass(frozen=True)
-class RestrictedMoments:
-    """Mean and variance of min(tau, horizon).
-
-    Attributes
-    ----------
-    horizon : float
-        Time at which every longer transition time is cut off.
-    mean : Uncertain
-        Restricted mean, with normal intervals.
-    variance : Uncertain
-        Restricted variance, with its error by the jackknife over runs.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> analysis.restricted_moments([1.0, 2.0, 3.0, 4.0], horizon=2.0).mean.value
-    1.75
-    """
-
-    horizon: float
-    mean: Uncertain
-    variance: Uncertain
-
-
-@dataclass(frozen=True)
-class LifetimeFit:
-    """A distribution fitted to the transition times of one ensemble.
-
-    Attributes
-    ----------
-    family : str
-        Family of the distribution.
-    mean : Uncertain
-        Mean `<tau>`, of the whole distribution, beyond the time watched too.
-    variance : Uncertain
-        Variance `chi_tau = <tau^2> - <tau>^2`.
-    shape : Uncertain | None
-        Shape k; `None` for the exponential.
-    log_likelihood : float
-        Largest log-likelihood, of densities in the unit of the times: comparable between families on the same runs.
-    observed : int
-        Runs with an observed transition.
-    censored : int
-        Censored runs.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> fit = analysis.fit_lifetime([10.0, 20.0, 30.0], [True, True, False], family="exponential")
-    >>> round(fit.mean.value, 6), fit.observed, fit.censored
-    (30.0, 2, 1)
-    """
-
-    family: str
-    mean: Uncertain
-    variance: Uncertain
-    shape: Uncertain | None
-    log_likelihood: float
-    observed: int
-    censored: int
-
-
-@dataclass(frozen=True)
-class ShiftedExponentialFit:
-    """Shifted exponential distribution fitted to the transition times of one ensemble.
-
-    Attributes
-    ----------
-    dead_time : Uncertain
-        Dead time t_0 before which no transition happens, corrected for its bias; 0 at least.
-    waiting_time : Uncertain
-        Mean waiting time theta after the dead time; 1/theta is the rate.
-    mean : Uncertain
-        Mean `<tau>` = t_0 + theta.
-    variance : Uncertain
-        Variance `chi_tau = theta^2`.
-    log_likelihood : float
-        Largest log-likelihood, comparable with that of a `LifetimeFit` on the same runs.
-    observed : int
-        Runs with an observed transition.
-    censored : int
-        Censored runs.
-
-    Examples
-    --------
-    >>> from peristalsis import analysis
-    >>> fit = analysis.fit_shifted_exponential([10.0, 12.0, 16.0, 22.0])
-    >>> fit.dead_time.value < 10.0 < fit.mean.value
-    True
-    """
-
-    dead_time: Uncertain
-    waiting_time: Uncertain
-    mean: Uncertain
-    variance: Uncertain
-    log_likelihood: float
-    observed: int
-    censored: int
 
 
 class Survival:
