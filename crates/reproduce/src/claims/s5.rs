@@ -86,7 +86,7 @@ fn between_prescribed_walls(evidence: &Evidence) -> Result<Option<String>> {
         });
         let (rate, point) =
             flows.min_by(|one, other| one.1.flow.value.total_cmp(&other.1.flow.value))?;
-        let is_negative = point.flow.value < -NO_BACK_FLOW_BY * point.flow.error;
+        let is_negative = is_below(&point, 0.0);
         let (flow, width) = (point.flow, point.control);
         is_negative.then(|| PROSE.text("smallest", values!(flow, width, rate, tube)))
     };
