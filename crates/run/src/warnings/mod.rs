@@ -2,6 +2,7 @@
 
 mod holding;
 mod leaking;
+mod sampling;
 mod seen;
 mod softness;
 mod threshold;
@@ -11,6 +12,7 @@ use peristalsis_configuration::{Configuration, Control, Schedule, ScheduledParam
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::wall::Arrangement;
 
+pub use sampling::samples_that_meet;
 pub use softness::overlap_at_wave_speed;
 pub use warning::Warning;
 
@@ -67,6 +69,7 @@ fn of_constants(configuration: &Configuration) -> Vec<Warning> {
     warnings.extend(holding::warnings(configuration));
     warnings.extend(prescribed_wall_warnings(configuration));
     warnings.extend(threshold::out_of_reach(configuration));
+    warnings.extend(sampling::warning(configuration));
     warnings
 }
 
