@@ -1,5 +1,6 @@
 //! The results of a run, in words.
 
+use peristalsis_analysis::CONFIRMATION_PERIODS;
 use peristalsis_analysis::number::{known_error, with_error};
 use peristalsis_configuration::{HOUR, Units};
 use peristalsis_reproduce::report::plain_text;
@@ -35,6 +36,10 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             configuration.observe.transition_threshold
         ),
         None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
+        None if run.recorder().periods() < u64::from(CONFIRMATION_PERIODS) => format!(
+            "too short to tell of a transition: {} periods, and {CONFIRMATION_PERIODS} whole ones in a row confirm it",
+            tenths(summary.time * configuration.drive.strain_rate)
+        ),
         None => format!(
             "no transition within {} periods",
             tenths(summary.time * configuration.drive.strain_rate)
