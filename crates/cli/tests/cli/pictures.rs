@@ -55,6 +55,20 @@ fn a_finished_run_is_drawn_from_every_side() {
 }
 
 #[test]
+fn a_loaded_run_is_compared_with_a_fluid_without_load() {
+    let place = Place::new();
+    place.does("run SMALL --out results");
+    place.does("run SMALL drive.body_force=-0.0001 --out loaded");
+    let says = |folder: &str| {
+        let svg = bytes(&place, &format!("{folder}/flow.svg"));
+        String::from_utf8(svg)
+            .unwrap()
+            .contains("Newtonian fluid without load")
+    };
+    assert_eq!(["results", "loaded"].map(says), [false, true]);
+}
+
+#[test]
 fn a_picture_takes_the_place_of_no_file_of_the_run() {
     let place = place();
     let before = place.inventory();
