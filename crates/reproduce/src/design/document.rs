@@ -9,7 +9,7 @@ use peristalsis_configuration::{
     ProblemKind, Problems, SourceFile, check_against, file_with_overrides, grain_mass, material,
     schema_of,
 };
-use peristalsis_run::samples_that_meet;
+use peristalsis_run::{longest_time_step, samples_that_meet};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -167,8 +167,16 @@ pub fn configuration_text(
         .expect("a file that follows the schema can be read");
     check_together(&keys, &table, &mut problems);
     problems.check()?;
-    let text = written(&keys, file.name);
-    Configuration::from_toml(&format!("the computation of {}", file.name), &text)?;
+    let mut text = written(&keys, file.name);
+    let read =
+        |text: &str| Configuration::from_toml(&format!("the computation of {}", file.name), text);
+    let configuration = read(&text)?;
+    // Contacts of small grains among large ones are short.
+    let longest = longest_time_step(&configuration);
+    if configuration.run.time_step > longest {
+        text += &format!("time_step = {:?}\n", three_digits(0.99 * longest));
+        read(&text)?;
+    }
     Ok(text)
 }
 

@@ -147,6 +147,11 @@ fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
     (rest > periods).then_some(Warning { key, message })
 }
 
+/// The longest time step that a contact is resolved with \[t\].
+pub fn longest_time_step(configuration: &Configuration) -> f64 {
+    contact_time(configuration) / STEPS_PER_CONTACT
+}
+
 /// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.
 pub(crate) fn contact_time(configuration: &Configuration) -> f64 {
     let model = configuration.contact;
