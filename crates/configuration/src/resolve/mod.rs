@@ -356,6 +356,8 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     if !tube.arrangement.is_drawn() {
         tube.arrangement_seed = FIRST_SEED;
     }
+    // Alone: what else is wrong follows from it.
+    tube::check_radius(&tube, &keys.grains.grains, context)?;
     tube::check_lattice(&tube, &keys.drive.drive.control, context);
     tube::check_sphere_diameter(&tube, keys.wall.sphere_diameter, context);
     let grains = grains::grains(&keys.grains, &tube, context);
