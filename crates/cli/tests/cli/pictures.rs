@@ -54,6 +54,18 @@ fn a_finished_run_is_drawn_from_every_side() {
     }
 }
 
+/// A picture alone counts displacements from the start of its run, not from itself.
+#[test]
+fn displacements_of_the_saved_state_are_those_of_the_run() {
+    let place = place();
+    let drawn = |range: &str| {
+        let options = format!("--colour axial-displacement --range {range} --bare --width 100");
+        place.does(&format!("render results {options} --out state.png"));
+        bytes(&place, "state.png")
+    };
+    assert_ne!(drawn("-0.1:0.1"), drawn("-1000:1000"));
+}
+
 #[test]
 fn a_loaded_run_is_compared_with_a_fluid_without_load() {
     let place = Place::new();

@@ -182,8 +182,11 @@ fn still(
                 "leave --at out, or take --from trajectory or --from start",
             ));
         }
-        let frame = FrameSource::now(&run, with_contacts);
-        return Ok(Some(draw(&run, look, &[frame])?));
+        let mut frames = vec![FrameSource::now(&run, with_contacts)];
+        if look.counts_from_first() {
+            frames.insert(0, FrameSource::now(&start_of(&run)?, with_contacts));
+        }
+        return Ok(Some(draw(&run, look, &frames)?));
     }
     if let Some(path) = trajectory(arguments, look)? {
         let frames = FrameSource::nearest(&path, arguments.at)?;
@@ -209,6 +212,17 @@ fn still(
         }
     }
     Ok(None)
+}
+
+/// The same run at t = 0.
+fn start_of(run: &Run) -> Result<Run, Failure> {
+    Run::new(run.configuration().clone()).map_err(|error| match error {
+        RunError::NotPlaced => Failure::usage(
+            "displacements count from the start of the run, where a program placed its grains",
+            "take --from trajectory, if there is one, or another --colour",
+        ),
+        other => other.into(),
+    })
 }
 
 /// The picture of the last of some frames.
