@@ -279,9 +279,10 @@ fn tenths(periods: f64) -> String {
 fn efficiency(pumping: &Pumping) -> String {
     let (efficiency, _) = pumping.efficiency;
     if efficiency.is_nan() {
-        let reason = match pumping.useful_power.0 > 0.0 {
-            true => "the wall gives no power: stored energy is spent",
-            false => "the grains do not go against the body force",
+        let reason = match pumping.useful_power.0 {
+            power if power.is_nan() => "nothing was measured",
+            power if power > 0.0 => "the wall gives no power: stored energy is spent",
+            _ => "the grains do not go against the body force",
         };
         return format!("efficiency – ({reason})");
     }
@@ -309,5 +310,6 @@ mod tests {
         assert!(said(1.0, 1.5).contains("stored energy is spent; run longer"));
         assert!(said(1.0, f64::NAN).starts_with("efficiency – (the wall"));
         assert!(said(-1.0, f64::NAN).starts_with("efficiency – (the grains"));
+        assert!(said(f64::NAN, f64::NAN).starts_with("efficiency – (nothing was measured"));
     }
 }
