@@ -16,7 +16,7 @@ use serde_json::json;
 pub(crate) use self::arguments::RenderArguments;
 use self::arguments::{Origin, ViewName};
 use crate::choice::Format;
-use crate::commands::{counted, print, refuse_loss, say, say_if_replaced};
+use crate::commands::{counted, packing, print, refuse_loss, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::stop::Stop;
@@ -216,7 +216,8 @@ fn still(
 
 /// The same run at t = 0.
 fn start_of(run: &Run) -> Result<Run, Failure> {
-    Run::new(run.configuration().clone()).map_err(|error| match error {
+    let configuration = run.configuration().clone();
+    packing(&configuration.clone(), || Run::new(configuration)).map_err(|error| match error {
         RunError::NotPlaced => Failure::usage(
             "displacements count from the start of the run, where a program placed its grains",
             "take --from trajectory, if there is one, or another --colour",
