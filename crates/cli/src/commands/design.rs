@@ -114,12 +114,19 @@ fn in_words(design: &Design) -> String {
     let mut lines = vec![format!("{:<76}{:>9}   published", "group", "here")];
     for group in &design.groups {
         let [least, most] = group.published.map(rounded);
-        let mark = if group.is_inside() { "" } else { "   outside" };
-        lines.push(format!(
-            "{:<76}{:>9}   {least} to {most}{mark}",
+        let line = format!(
+            "{:<76}{:>9}   {least} to {most}   {}",
             group.meaning,
-            rounded(group.value)
-        ));
+            rounded(group.value),
+            group.place()
+        );
+        lines.push(line.trim_end().to_owned());
+    }
+    if design.groups.iter().any(|group| group.place() == "near") {
+        lines.push(
+            "near: beyond the range by less than makes two tubes differ, and counted as within it"
+                .to_owned(),
+        );
     }
     lines.push(String::new());
     lines.push(format!("regime            {}", design.regime));

@@ -81,6 +81,15 @@ fn a_loaded_run_is_compared_with_a_fluid_without_load() {
 }
 
 #[test]
+fn an_empty_tube_waits_for_no_flow() {
+    let place = Place::new();
+    place.does("run SMALL grains.number=0 --out empty");
+    place.does("render empty --width 200 --out empty.svg");
+    let svg = String::from_utf8(bytes(&place, "empty.svg")).unwrap();
+    assert!(svg.contains(": no grains") && !svg.contains("not yet"));
+}
+
+#[test]
 fn a_picture_takes_the_place_of_no_file_of_the_run() {
     let place = place();
     let before = place.inventory();

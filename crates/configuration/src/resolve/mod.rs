@@ -308,6 +308,8 @@ impl Context<'_> {
         for (place, key) in keys.iter().enumerate() {
             if !keys[..place].contains(key)
                 && let Some(entry) = document::entry(self.table, key)
+                // Two columns of one file stand at the same place.
+                && !places.iter().any(|(_, origin)| origin.is_same(&entry.item.origin))
             {
                 places.push((written_as(key, entry), entry.item.origin.clone()));
             }

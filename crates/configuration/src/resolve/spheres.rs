@@ -54,11 +54,11 @@ pub(super) fn read(table: &mut Table, problems: &mut Problems) {
 
 fn read_one(file: &FileKey, table: &mut Table, problems: &mut Problems) {
     let path = format!("{}.{}", file.table, file.name);
-    let Some(Entry { item, .. }) = document::entry(table, &path) else {
+    let Some(Entry { key: written, item }) = document::entry(table, &path) else {
         return;
     };
     let Node::Text(name) = &item.node else { return };
-    let origin = item.origin.clone();
+    let (key_origin, origin) = (written.clone(), item.origin.clone());
     let source = source_of(name, &origin);
     let columns = match source.and_then(|source| columns_of(&source, file.columns)) {
         Ok(columns) => columns,
@@ -82,11 +82,11 @@ fn read_one(file: &FileKey, table: &mut Table, problems: &mut Problems) {
         };
         let full = format!("{}.{key}", file.table);
         contract::check(
-            &document::setting(&full, &origin, item.clone()),
+            &document::setting(&full, &key_origin, item.clone()),
             problems,
         );
         let entry = Entry {
-            key: origin.clone(),
+            key: key_origin.clone(),
             item,
         };
         keys.insert(key.to_owned(), entry);
