@@ -93,6 +93,8 @@ pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, secon
 pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};
 pub use survival::{RestrictedMoments, Survival, SurvivalStep, restricted_moments};
-pub use transition::{Direction, Transition, TransitionDetector, transition_time};
+pub use transition::{
+    CONFIRMATION_PERIODS, Direction, Transition, TransitionDetector, transition_time,
+};
 pub use truncation::{StationaryMean, stationary_mean};
 pub use uncertain::{Interval, Uncertain};

@@ -4,7 +4,7 @@ use crate::error::{Error, ensure};
 use serde::{Deserialize, Serialize};
 
 /// Period averages in a row that must lie beyond the threshold before a crossing counts.
-const CONFIRMATION_PERIODS: u32 = 3;
+pub const CONFIRMATION_PERIODS: u32 = 3;
 
 /// The way in which the flow rate crosses the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

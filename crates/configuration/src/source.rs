@@ -72,6 +72,11 @@ impl Origin {
         self.span.clone()
     }
 
+    /// Whether both are the same place of the same text.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.source, &other.source) && self.span == other.span
+    }
+
     /// The text at this place.
     pub fn text(&self) -> &str {
         self.source.text.get(self.span.clone()).unwrap_or("")

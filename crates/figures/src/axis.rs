@@ -181,7 +181,7 @@ impl Axis {
     }
 
     /// An end with as many digits as tell it from values a hundredth of the axis away.
-    fn label_of_end(&self, value: f64) -> String {
+    pub(crate) fn label_of_end(&self, value: f64) -> String {
         let magnitude = value.abs();
         let slack = match self.scale {
             Scale::Linear | Scale::Counting => (self.largest - self.least) / 100.0,

@@ -132,18 +132,33 @@ impl ColourScale {
         }
     }
 
-    /// Ticks of a bar, and numbers at its ends where there is room; ends with values beyond them are marked so.
+    /// Ticks of a bar, and numbers at its ends where there is room; an end with values beyond it is marked so, and numbers
+    /// in the way of its mark are left out.
     fn ticks(&self, length: f64, most: usize, extent: impl Fn(&str) -> f64) -> Vec<Tick> {
-        let mut ticks = self.axis().fitting_ticks(length, most, &extent);
-        ticks.extend(self.axis().end_ticks(length, &ticks, extent));
-        for tick in &mut ticks {
-            let sign = match tick.value {
-                value if value <= self.least && self.found.0 < self.least => "≤ ",
-                value if value >= self.largest && self.found.1 > self.largest => "≥ ",
-                _ => continue,
-            };
-            tick.label = tick.label.take().map(|label| format!("{sign}{label}"));
+        let axis = self.axis();
+        let mut ticks = axis.fitting_ticks(length, most, &extent);
+        let ends = [
+            (self.least, self.found.0 < self.least, "≤ "),
+            (self.largest, self.found.1 > self.largest, "≥ "),
+        ];
+        for (value, _, sign) in ends.into_iter().filter(|(_, is_passed, _)| *is_passed) {
+            let place = axis.fraction(value);
+            let apart = |tick: &Tick| length * (axis.fraction(tick.value) - place).abs();
+            let at_end = ticks.iter().find(|tick| apart(tick) < 1e-6);
+            let number = at_end.and_then(|tick| tick.label.clone());
+            let number = number.unwrap_or_else(|| axis.label_of_end(value));
+            let room = extent(&number);
+            ticks.retain(|tick| apart(tick) >= 1e-6);
+            for tick in ticks.iter_mut().filter(|tick| apart(tick) < room) {
+                tick.label = None;
+            }
+            ticks.push(Tick {
+                value,
+                length: MAJOR_TICK,
+                label: Some(format!("{sign}{number}")),
+            });
         }
+        ticks.extend(axis.end_ticks(length, &ticks, extent));
         ticks
     }
 
@@ -286,6 +301,20 @@ mod tests {
         );
         // A number that stands close to an end says enough.
         assert_eq!(ends(ColourScale::new("", 0.0, 1.02)), ["0.0", "1.0"]);
+    }
+
+    #[test]
+    fn an_end_with_values_beyond_it_is_marked_where_no_tick_stands() {
+        for (least, largest) in [(-0.33, 0.33), (-1.0, 1.0), (0.0, 0.00731), (0.0, 0.0503)] {
+            let scale = ColourScale::new("", least, largest).found(-9.0, f64::INFINITY);
+            for ticks in [scale.ticks_up(60.0), scale.ticks_across(110.0)] {
+                let labels: Vec<&str> = ticks.iter().filter_map(|it| it.label.as_deref()).collect();
+                for sign in ["≤ ", "≥ "] {
+                    let marked = labels.iter().filter(|label| label.starts_with(sign));
+                    assert_eq!(marked.count(), 1, "{least} to {largest}: {labels:?}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -143,6 +143,24 @@ fn super_load(configuration: &Configuration) -> f64 {
     groups(configuration).unwrap()[GROUPS - 1]
 }
 
+/// What a design is computed with is nothing that the computation warns of: samples find the rings of the wall everywhere in
+/// the wave, and steps are short enough for the contacts of the smallest grains.
+#[test]
+fn a_design_samples_its_wall_everywhere_and_resolves_its_contacts() {
+    const LIFT: &str = "[grain]\nmaterial = \"tablet\"\ndiameter = 4e-3\n\
+                        [tube]\ndiameter = 24e-3\nwavelength = 60e-3\nocclusion = 0.8\nfill = 0.4\nincline = 90\n\
+                        [drive]\nfrequency = 4.0\n";
+    for spread in [0.0, 0.9] {
+        let found = configuration(LIFT, &[&format!("grain.spread={spread}")]).unwrap();
+        assert_eq!(found.tube.rings_per_wave, 20);
+        assert_eq!(found.observe.samples_per_period, 21);
+        let keys = ["run.time_step", "observe.samples_per_period"];
+        let warnings = peristalsis_run::warnings(&found);
+        let about = |it: &&peristalsis_run::Warning| keys.contains(&it.key);
+        assert_eq!(warnings.iter().find(about), None, "{spread}");
+    }
+}
+
 #[test]
 fn what_is_wrong_in_a_design_is_named_with_its_line() {
     for (text, key, line, words) in [

@@ -53,7 +53,9 @@ pub use trajectory::{
     FrameFile, FrameFormat, FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan,
     TrajectoryReport, TrajectoryRequest, Window,
 };
-pub use warnings::{Warning, overlap_at_wave_speed, warnings};
+pub use warnings::{
+    Warning, longest_time_step, overlap_at_wave_speed, samples_that_meet, warnings,
+};
 
 /// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
 /// results, so that no old run is taken for a new one, and none goes on as another.

@@ -281,7 +281,7 @@ fn wall_interval(steps_per_sample: u64, samples_per_period: u64) -> u64 {
         .unwrap_or(least)
 }
 
-fn greatest_common_divisor(mut one: u64, mut other: u64) -> u64 {
+pub(crate) fn greatest_common_divisor(mut one: u64, mut other: u64) -> u64 {
     while other > 0 {
         (one, other) = (other, one % other);
     }

@@ -1,8 +1,8 @@
 //! The row of a finished run: all that tables and analyses need of it, and nothing that depends on when it was computed.
 
-use peristalsis_configuration::Configuration;
+use peristalsis_configuration::{Configuration, word};
 use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values, csv};
-use peristalsis_run::{RowColumn, Summary, Value, gathered, row_columns, set_by};
+use peristalsis_run::{RowColumn, Status, Summary, Value, gathered, row_columns, set_by};
 
 use crate::identity::{Identity, PHYSICS_VERSION};
 
@@ -10,6 +10,9 @@ use crate::identity::{Identity, PHYSICS_VERSION};
 pub(crate) const PHYSICS: &str = "peristalsis.physics_version";
 /// Columns that rows of earlier versions lack, and what all of those had.
 const LATER: [(&str, &str); 1] = [("arrangement", "staggered")];
+/// How a finished run has ended.
+const FINISHED: [Status; 2] = [Status::Complete, Status::Settled];
+
 /// The row of one finished run, a table of one row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
@@ -94,8 +97,14 @@ impl Row {
 
     /// The first setting in this row that its run cannot have, in words; `None` where all agree. A table is believed by its
     /// identities: one that was edited, or joined wrongly, must not pass.
-    pub(crate) fn contradiction(&self, configuration: &Configuration) -> Option<String> {
-        set_by(configuration).into_iter().find_map(|(name, value)| {
+    pub(crate) fn contradiction(
+        &self,
+        replicate: u32,
+        configuration: &Configuration,
+    ) -> Option<String> {
+        let replicate = ("replicate", Value::Whole(replicate.into()));
+        let mut expected = set_by(configuration).into_iter().chain([replicate]);
+        expected.find_map(|(name, value)| {
             let found = &self.table.column(name).ok()?.values;
             let expected = gathered(found.kind(), [value].into_iter());
             let is_same = match (&expected, found) {
@@ -109,8 +118,24 @@ impl Row {
         })
     }
 
-    /// A number of this row that no finished run has, in words.
+    /// In words where this row and another of the same run differ: one of them is wrong.
+    pub(crate) fn conflict(&self, other: &Self) -> Option<String> {
+        let difference = self.differences(other).into_iter().next()?;
+        Some(format!(
+            "the run {} stands in it twice, with another {}",
+            self.identity, difference.column
+        ))
+    }
+
+    /// A value of this row that no finished run has, in words.
     pub(crate) fn impossible(&self) -> Option<String> {
+        let status = self.table.texts("status").ok()?.first()?;
+        if !FINISHED.iter().any(|it| word(it) == *status) {
+            return Some(format!(
+                "the run {} has the status {status:?}, and not that of a finished run",
+                self.identity
+            ));
+        }
         let value = |name: &str| Some((name.to_owned(), *self.table.reals(name).ok()?.first()?));
         let measured = ["time", "periods", "flow_rate", "flow_rate_ratio"];
         let mut measured = measured.into_iter().filter_map(value);

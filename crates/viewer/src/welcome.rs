@@ -1,6 +1,6 @@
 //! The first message to the page of a run.
 
-use peristalsis_configuration::{Control, Ends};
+use peristalsis_configuration::{Control, Ends, WaveformName};
 use peristalsis_engine::Wall;
 use peristalsis_observe::MOST_ROWS;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
@@ -38,7 +38,8 @@ pub(crate) struct Welcome {
     /// tell t.
     unit_period: Option<f64>,
     pub(crate) ranges: Ranges,
-    /// J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed.
+    /// J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed, and where the
+    /// wave is no sine that moves.
     newtonian: Vec<(f64, f64)>,
     pub(crate) driven: Driven,
     /// The whole time series of a run that was computed before: (time in periods, J/Jmax).
@@ -94,8 +95,10 @@ fn round(number: f64) -> f64 {
 }
 
 /// Flow of a Newtonian fluid in the tube to the centres of its wall spheres, at widths over the range of the slider.
-fn newtonian(ranges: &Ranges, radius: f64) -> Vec<(f64, f64)> {
-    let Some((from, to)) = ranges.width else {
+fn newtonian(ranges: &Ranges, configuration: &Configuration) -> Vec<(f64, f64)> {
+    let (drive, radius) = (&configuration.drive, configuration.tube.radius);
+    let is_known = drive.waveform == WaveformName::Sine && drive.period().is_some();
+    let Some((from, to)) = ranges.width.filter(|_| is_known) else {
         return Vec::new();
     };
     let widths = (0..=40).map(|place| from + f64::from(place) / 40.0 * (to - from));
@@ -141,7 +144,7 @@ impl Welcome {
             heading: wall.heading(),
             reach: 2.0 * configuration.tube.radius,
             unit_period: configuration.drive.period(),
-            newtonian: newtonian(&ranges, configuration.tube.radius),
+            newtonian: newtonian(&ranges, configuration),
             ranges,
             driven: timeline.driven(0.0),
             record: Vec::new(),
@@ -155,5 +158,21 @@ impl Welcome {
 
     pub(crate) fn to_json(&self) -> String {
         serde_json::to_string(self).expect("a welcome holds numbers and words only")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_newtonian_fluid_is_known_in_a_sine_that_moves() {
+        let points = |settings: &[&str]| {
+            let configuration = Configuration::from_preset("frictionless", settings).unwrap();
+            newtonian(&Ranges::of(&configuration), &configuration).len()
+        };
+        assert_eq!(points(&[]), 41);
+        assert_eq!(points(&["drive.waveform=\"roller\""]), 0);
+        assert_eq!(points(&["drive.strain_rate=0", "run.duration=10"]), 0);
     }
 }

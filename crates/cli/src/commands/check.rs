@@ -8,7 +8,7 @@ use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::{request, size};
-use crate::commands::{counted, print_report, rounded, significant, with_words};
+use crate::commands::{counted, packing, print_report, rounded, significant};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
@@ -17,14 +17,11 @@ use crate::stop::Stop;
 pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let _stop = Stop::watch()?;
     let configuration = configuration(&arguments.configuration)?;
-    let words = format!(
-        "packing grains for a short trial: it takes long for {} grains among {} spheres of the wall; Ctrl-C ends it",
-        configuration.grains.number,
-        configuration.tube.wall_spheres()
-    );
     let request = request(&arguments.frames);
-    let estimate = with_words(&words, || estimate(&configuration, request.as_ref()))
-        .map_err(|error| locate(error, &arguments.configuration))?;
+    let estimate = packing(&configuration, || {
+        estimate(&configuration, request.as_ref())
+    })
+    .map_err(|error| locate(error, &arguments.configuration))?;
     print_report(arguments.json, || &estimate, || in_words(&estimate))
 }
 

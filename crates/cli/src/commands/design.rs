@@ -12,7 +12,7 @@ use peristalsis_run::estimate;
 use crate::arguments::ConfigurationArguments;
 use crate::commands::check::in_words as estimate_in_words;
 use crate::commands::schema::{SchemaArguments, show};
-use crate::commands::{print_report, refuse_loss, rounded, say_if_replaced, significant};
+use crate::commands::{packing, print_report, refuse_loss, rounded, say_if_replaced, significant};
 use crate::failure::{Failure, say};
 use crate::sources::{configuration, locate, name_and_text};
 use crate::stop::Stop;
@@ -61,7 +61,8 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.write {
         write(path, &text.unwrap_or_else(|| configuration.to_toml()))?;
     }
-    let estimate = estimate(&configuration, None).map_err(|error| locate(error, sources))?;
+    let estimate = packing(&configuration, || estimate(&configuration, None))
+        .map_err(|error| locate(error, sources))?;
     let design = Design::of(&configuration, estimate).ok_or_else(no_design)?;
     if let Some(path) = &arguments.html {
         let name = crate::sources::name(sources);
@@ -113,12 +114,19 @@ fn in_words(design: &Design) -> String {
     let mut lines = vec![format!("{:<76}{:>9}   published", "group", "here")];
     for group in &design.groups {
         let [least, most] = group.published.map(rounded);
-        let mark = if group.is_inside() { "" } else { "   outside" };
-        lines.push(format!(
-            "{:<76}{:>9}   {least} to {most}{mark}",
+        let line = format!(
+            "{:<76}{:>9}   {least} to {most}   {}",
             group.meaning,
-            rounded(group.value)
-        ));
+            rounded(group.value),
+            group.place()
+        );
+        lines.push(line.trim_end().to_owned());
+    }
+    if design.groups.iter().any(|group| group.place() == "near") {
+        lines.push(
+            "near: beyond the range by less than makes two tubes differ, and counted as within it"
+                .to_owned(),
+        );
     }
     lines.push(String::new());
     lines.push(format!("regime            {}", design.regime));

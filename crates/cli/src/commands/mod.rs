@@ -23,6 +23,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 pub(crate) use peristalsis_analysis::number::{counted, significant};
+use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_run::Warning;
 use serde::Serialize;
 
@@ -103,13 +104,23 @@ fn warn_besides(said: &[Warning], warnings: &[Warning]) {
 /// How long work may take before something is said of it.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// Does work, and says something on standard error where it takes longer than one waits for in silence.
-fn with_words<T>(words: &str, work: impl FnOnce() -> T) -> T {
+/// Packs the grains of a configuration, which may have to settle, and says so on standard error where it takes longer than
+/// one waits for in silence.
+fn packing<T>(configuration: &Configuration, work: impl FnOnce() -> T) -> T {
+    let settling = match configuration.initial.state {
+        InitialState::Settled => " and letting them settle",
+        _ => "",
+    };
+    let words = format!(
+        "packing grains{settling}: it takes long for {} grains among {} spheres of the wall; Ctrl-C ends it",
+        configuration.grains.number,
+        configuration.tube.wall_spheres()
+    );
     let (working, ended) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         scope.spawn(move || {
             if ended.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
-                say(words);
+                say(&words);
             }
         });
         let outcome = work();

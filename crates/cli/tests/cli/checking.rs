@@ -118,7 +118,7 @@ fn each_warning_comes_when_it_is_due_and_alone() {
         ),
         (
             "frictionless",
-            "tube.rings_per_wave=10",
+            "tube.rings_per_wave=10 observe.profile_bins=10",
             "tube.rings_per_wave=16",
             "tube.rings_per_wave",
         ),

@@ -27,6 +27,11 @@ fn a_design_is_told_written_and_computed() {
     let json = place
         .does("design hose.toml --json --set gravity=0 tube.occlusion=0.5")
         .json();
+    let near = place.does("design hose.toml tube.occlusion=0.69").stdout;
+    assert!(
+        near.contains("0.667   near\n") && near.contains("\nnear: "),
+        "{near}"
+    );
     assert_eq!(json["groups"][1]["name"], "occlusion");
     assert_eq!(json["groups"][1]["value"], 0.5);
     assert!(json["estimate"]["expected_seconds"].is_number());

@@ -54,6 +54,41 @@ fn a_finished_run_is_drawn_from_every_side() {
     }
 }
 
+/// A picture alone counts displacements from the start of its run, not from itself.
+#[test]
+fn displacements_of_the_saved_state_are_those_of_the_run() {
+    let place = place();
+    let drawn = |range: &str| {
+        let options = format!("--colour axial-displacement --range {range} --bare --width 100");
+        place.does(&format!("render results {options} --out state.png"));
+        bytes(&place, "state.png")
+    };
+    assert_ne!(drawn("-0.1:0.1"), drawn("-1000:1000"));
+}
+
+#[test]
+fn a_loaded_run_is_compared_with_a_fluid_without_load() {
+    let place = Place::new();
+    place.does("run SMALL --out results");
+    place.does("run SMALL drive.body_force=-0.0001 --out loaded");
+    let says = |folder: &str| {
+        let svg = bytes(&place, &format!("{folder}/flow.svg"));
+        String::from_utf8(svg)
+            .unwrap()
+            .contains("Newtonian fluid without load")
+    };
+    assert_eq!(["results", "loaded"].map(says), [false, true]);
+}
+
+#[test]
+fn an_empty_tube_waits_for_no_flow() {
+    let place = Place::new();
+    place.does("run SMALL grains.number=0 --out empty");
+    place.does("render empty --width 200 --out empty.svg");
+    let svg = String::from_utf8(bytes(&place, "empty.svg")).unwrap();
+    assert!(svg.contains(": no grains") && !svg.contains("not yet"));
+}
+
 #[test]
 fn a_picture_takes_the_place_of_no_file_of_the_run() {
     let place = place();

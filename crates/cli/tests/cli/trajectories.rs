@@ -52,6 +52,7 @@ fn what_cannot_be_is_refused_before_anything_is_made() {
         ("--trajectory gsd --trajectory-every often", "such as 0.1"),
         ("--trajectory gsd --trajectory-every 0", "a longer interval"),
         ("--trajectory gsd --trajectory-window 3", "FROM:TO"),
+        ("--trajectory gsd --trajectory-window 2:1", "reversed"),
         (
             "--trajectory gsd --trajectory-window 7:9",
             "none of its frames",

@@ -75,6 +75,11 @@ fn stores_tables_and_reproductions_are_served() {
     }
     place.write("times.csv", "time,ratio\n0.5,1\n");
     place.refuses("view times.csv", &["times", "identity"]);
+    place.write("none.csv", "identity,replicate\n");
+    place.refuses(
+        "view none.csv",
+        &["none is no table of finished runs", "it has no rows"],
+    );
 }
 
 #[test]

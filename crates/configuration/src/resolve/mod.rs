@@ -308,6 +308,8 @@ impl Context<'_> {
         for (place, key) in keys.iter().enumerate() {
             if !keys[..place].contains(key)
                 && let Some(entry) = document::entry(self.table, key)
+                // Two columns of one file stand at the same place.
+                && !places.iter().any(|(_, origin)| origin.is_same(&entry.item.origin))
             {
                 places.push((written_as(key, entry), entry.item.origin.clone()));
             }
@@ -356,6 +358,8 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     if !tube.arrangement.is_drawn() {
         tube.arrangement_seed = FIRST_SEED;
     }
+    // Alone: what else is wrong follows from it.
+    tube::check_radius(&tube, &keys.grains.grains, context)?;
     tube::check_lattice(&tube, &keys.drive.drive.control, context);
     tube::check_sphere_diameter(&tube, keys.wall.sphere_diameter, context);
     let grains = grains::grains(&keys.grains, &tube, context);

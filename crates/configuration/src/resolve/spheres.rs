@@ -1,12 +1,15 @@
 //! Numbers that the user gives in a file: places of wall spheres, the shape of a wave, sizes of grains.
 
+use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::Context;
 use crate::configuration::Tube;
+use crate::contract;
 use crate::document::{self, Entry, Item, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
-use crate::source::{Origin, SourceKind};
+use crate::source::{Origin, Source, SourceKind};
 
 /// A key that names a file of two columns, and the keys that take its numbers.
 struct FileKey {
@@ -41,7 +44,8 @@ const FILES: [FileKey; 3] = [
     },
 ];
 
-/// Reads the files that keys name into the keys that take their numbers: from then on a run needs the files no more.
+/// Reads the files that keys name into the keys that take their numbers, within the ranges of these keys: from then on a
+/// run needs the files no more.
 pub(super) fn read(table: &mut Table, problems: &mut Problems) {
     for file in &FILES {
         read_one(file, table, problems);
@@ -50,12 +54,13 @@ pub(super) fn read(table: &mut Table, problems: &mut Problems) {
 
 fn read_one(file: &FileKey, table: &mut Table, problems: &mut Problems) {
     let path = format!("{}.{}", file.table, file.name);
-    let Some(Entry { item, .. }) = document::entry(table, &path) else {
+    let Some(Entry { key: written, item }) = document::entry(table, &path) else {
         return;
     };
     let Node::Text(name) = &item.node else { return };
-    let origin = item.origin.clone();
-    let columns = match text_of(name, &origin).and_then(|text| columns_of(&text, file.columns)) {
+    let (key_origin, origin) = (written.clone(), item.origin.clone());
+    let source = source_of(name, &origin);
+    let columns = match source.and_then(|source| columns_of(&source, file.columns)) {
         Ok(columns) => columns,
         Err(message) => {
             let message = format!("{path} = {name:?}: {message}");
@@ -71,25 +76,25 @@ fn read_one(file: &FileKey, table: &mut Table, problems: &mut Problems) {
         return;
     };
     for (key, numbers) in file.into.into_iter().zip(columns) {
-        let item = |node| Item {
+        let item = Item {
             origin: origin.clone(),
-            node,
+            node: Node::Array(numbers),
         };
-        let numbers = numbers.into_iter().map(|number| item(Node::Float(number)));
-        let item = item(Node::Array(numbers.collect()));
-        let key_origin = origin.clone();
-        keys.insert(
-            key.to_owned(),
-            Entry {
-                key: key_origin,
-                item,
-            },
+        let full = format!("{}.{key}", file.table);
+        contract::check(
+            &document::setting(&full, &key_origin, item.clone()),
+            problems,
         );
+        let entry = Entry {
+            key: key_origin.clone(),
+            item,
+        };
+        keys.insert(key.to_owned(), entry);
     }
 }
 
 /// The file beside the one that names it, or else seen from where the program runs.
-fn text_of(name: &str, origin: &Origin) -> Result<String, String> {
+fn source_of(name: &str, origin: &Origin) -> Result<Arc<Source>, String> {
     let beside = match origin.source.kind {
         SourceKind::File => Path::new(&*origin.source.name).parent(),
         SourceKind::Preset | SourceKind::Override => None,
@@ -97,14 +102,19 @@ fn text_of(name: &str, origin: &Origin) -> Result<String, String> {
     let beside = beside.map(|folder| folder.join(name));
     let path = beside.filter(|path| path.is_file());
     let path = path.as_deref().unwrap_or(Path::new(name));
-    std::fs::read_to_string(path).map_err(|error| error.to_string())
+    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    Ok(Source::new(
+        SourceKind::File,
+        &*path.to_string_lossy(),
+        &text,
+    ))
 }
 
-/// The two columns of a table under this first line.
-fn columns_of(text: &str, names: &str) -> Result<[Vec<f64>; 2], String> {
+/// The two columns of a table under this first line, each number with its place.
+fn columns_of(source: &Arc<Source>, names: &str) -> Result<[Vec<Item>; 2], String> {
     let mut columns = [Vec::new(), Vec::new()];
     // Spreadsheets write a byte order mark.
-    let text = text.trim_start_matches('\u{feff}');
+    let text = source.text.trim_start_matches('\u{feff}');
     let lines = text.lines().map(str::trim).enumerate();
     let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     let heading = lines.next().map_or("", |(_, line)| line);
@@ -112,9 +122,16 @@ fn columns_of(text: &str, names: &str) -> Result<[Vec<f64>; 2], String> {
         return Err(format!("its first line is {heading:?}, not {names}"));
     }
     for (number, line) in lines {
-        let mut values = line.split(',').map(|value| value.trim().parse::<f64>());
+        let mut values = line.split(',').map(|value| {
+            let value = value.trim();
+            let number = value.parse::<f64>().ok().filter(|it| it.is_finite())?;
+            Some(Item {
+                origin: Origin::new(source, place(value, &source.text)),
+                node: Node::Float(number),
+            })
+        });
         match (values.next(), values.next(), values.next()) {
-            (Some(Ok(one)), Some(Ok(other)), None) if (one + other).is_finite() => {
+            (Some(Some(one)), Some(Some(other)), None) => {
                 columns[0].push(one);
                 columns[1].push(other);
             }
@@ -122,6 +139,12 @@ fn columns_of(text: &str, names: &str) -> Result<[Vec<f64>; 2], String> {
         }
     }
     Ok(columns)
+}
+
+/// The bytes of a text that a part of it covers.
+fn place(part: &str, text: &str) -> Range<usize> {
+    let start = part.as_ptr().addr() - text.as_ptr().addr();
+    start..start + part.len()
 }
 
 /// Whether each sphere has an angle and a place in the tube.

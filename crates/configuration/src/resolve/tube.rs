@@ -2,10 +2,11 @@
 
 use peristalsis_physics::wall::Arrangement;
 
-use super::{Context, spheres};
+use super::{Context, plain, spheres};
 use crate::configuration::{Control, Tube};
 use crate::document::{self, Item, Node, Table};
 use crate::error::ProblemKind;
+use crate::grains::Grains;
 use crate::keys::RINGS;
 use crate::{layers, limits};
 
@@ -33,6 +34,26 @@ pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Contex
         let help = format!("spheres_per_ring * rings_per_wave * waves is at most {most}");
         context.refuse::<()>(ProblemKind::OutOfRange, &keys, message, help);
     }
+}
+
+/// A tube in which no grain fits: one whose lengths were given in metres as a rule.
+pub(super) fn check_radius(tube: &Tube, grains: &Grains, context: &mut Context<'_>) -> Option<()> {
+    let diameters = grains.diameters.iter().copied();
+    let (radius, least) = (tube.radius, diameters.fold(grains.diameter_min, f64::min));
+    if radius >= 0.5 * least {
+        return Some(());
+    }
+    let (radius, least) = (plain(radius), plain(least));
+    context.refuse(
+        ProblemKind::Inconsistent,
+        &["tube.radius", "grains.diameter_min"],
+        format!(
+            "tube.radius = {radius} is less than half the smallest grain, {least}: no grain fits into the tube"
+        ),
+        "lengths of the tube, the drive and the grains are in units of d, a grain of diameter 1, also where units.grain_diameter \
+         gives d in metres: a radius of 7 mm with grains of 2 mm is tube.radius = 3.5"
+            .to_owned(),
+    )
 }
 
 /// Notes that a smooth wall has no rings of spheres.

@@ -78,6 +78,7 @@ width = 2.75 -> &\nforce_amplitude = 0.004 | Conflict | drive.force_amplitude | 
 law = "linear" -> &\nyoung_modulus = 2 | Conflict | contact.young_modulus | 5 | contact.law = "hertz"
 [run] -> [wall.keep]\naxial = 0.1\n& | Conflict | wall.keep | 15 | drive.control = "stress"
 
+radius = 1.5 -> radius = 7e-3; width = 2.75 -> width = 8e-3 | Inconsistent | tube.radius | 6 | tube.radius = 3.5 | no grain fits
 width = 2.75 -> width = 3.0000001 | Inconsistent | drive.width | 13 | 2 tube.radius = 3
 width = 2.75 -> amplitude = 1.6 | Inconsistent | drive.amplitude | 13 | tube.radius = 1.5
 

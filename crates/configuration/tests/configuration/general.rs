@@ -197,6 +197,23 @@ fn sizes_that_are_not_whole_are_refused() {
         let problem = only_problem("frictional", &[&bounds[..], settings].concat());
         assert_eq!(problem.kind, ProblemKind::Inconsistent, "{problem}");
     }
+    let file = std::env::temp_dir().join(format!("peristalsis-sizes-{}.csv", std::process::id()));
+    let name = format!("grains.file={:?}", file.to_str().unwrap());
+    for (line, key) in [
+        ("-1, 0.5", "diameters"),
+        ("0, 0.5", "diameters"),
+        ("2, -0.5", "fractions"),
+    ] {
+        std::fs::write(&file, format!("diameter,fraction\n1,0.5\n{line}\n")).unwrap();
+        let problem = only_problem("frictional", &["grains.sizes=\"table\"", &name]);
+        assert_eq!(problem.kind, ProblemKind::OutOfRange, "{problem}");
+        assert!(
+            problem.message.contains(&format!("grains.{key}[1]")),
+            "{problem}"
+        );
+        assert_eq!(problem.labels[0].line_and_column().0, 3, "{problem}");
+    }
+    std::fs::remove_file(&file).unwrap();
     let problem = only_problem("frictional", &["grains.diameter_spread=0.2"]);
     assert_eq!(problem.kind, ProblemKind::Conflict, "{problem}");
 }

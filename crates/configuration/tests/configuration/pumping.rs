@@ -266,6 +266,21 @@ fn a_wave_from_a_table() {
     std::fs::write(&file, "phase,radius\n0, 15\n0.25\n").unwrap();
     let found = only_problem(read(None, Some("frictionless"), &[waveform, &name]));
     assert!(found.message.contains("line 3"), "{found:?}");
+    std::fs::write(&file, "phase,radius\n0, 15\n# bad\n0.25, -15\n0.7, 9\n").unwrap();
+    let found = only_problem(read(None, Some("frictionless"), &[waveform, &name]));
+    assert_eq!(
+        found.message, "drive.radii[1] = -15 is too small",
+        "{found:?}"
+    );
+    let label = &found.labels[0];
+    assert_eq!(*label.source_name, *file.to_string_lossy());
+    assert_eq!(label.line_and_column(), (4, 7));
+    // Both columns are of one file, which is named once, by its key.
+    std::fs::write(&file, "phase,radius\n0, 15\n0.25, 15\n0.7, 15\n").unwrap();
+    let found = only_problem(read(None, Some("frictionless"), &[waveform, &name]));
+    // The file, and the waveform.
+    assert_eq!(found.labels.len(), 2, "{found:?}");
+    assert!(found.labels[0].message.starts_with("table = "), "{found:?}");
     std::fs::remove_dir_all(&folder).unwrap();
 }
 

@@ -119,6 +119,7 @@ fn what_no_restitution_can_be_made_of_is_refused_by_its_key() {
                 "grains.number=4",
                 "grains.diameter_max=1e5",
                 "grains.diameter_min=1e5",
+                "tube.radius=1e5",
                 "tube.wavelength=1e6",
                 "tube.waves=4",
             ],

@@ -5,10 +5,11 @@ use std::sync::LazyLock;
 
 use peristalsis_configuration::document::{self, Table};
 use peristalsis_configuration::{
-    Configuration, ConfigurationError, Grains, MATERIALS, MOST_GRAINS, Material, Problem,
+    Configuration, ConfigurationError, Grains, MATERIALS, MOST_GRAINS, Material, Observe, Problem,
     ProblemKind, Problems, SourceFile, check_against, file_with_overrides, grain_mass, material,
     schema_of,
 };
+use peristalsis_run::{longest_time_step, samples_that_meet};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -166,8 +167,16 @@ pub fn configuration_text(
         .expect("a file that follows the schema can be read");
     check_together(&keys, &table, &mut problems);
     problems.check()?;
-    let text = written(&keys, file.name);
-    Configuration::from_toml(&format!("the computation of {}", file.name), &text)?;
+    let mut text = written(&keys, file.name);
+    let read =
+        |text: &str| Configuration::from_toml(&format!("the computation of {}", file.name), text);
+    let configuration = read(&text)?;
+    // Contacts of small grains among large ones are short.
+    let longest = longest_time_step(&configuration);
+    if configuration.run.time_step > longest {
+        text += &format!("time_step = {:?}\n", three_digits(0.99 * longest));
+        read(&text)?;
+    }
     Ok(text)
 }
 
@@ -352,6 +361,11 @@ fn written(keys: &Keys, name: &str) -> String {
     let weight = keys.gravity * grain_mass(density, d) / (stiffness * d);
     let settles = tube.incline == 0.0 && body_force.abs() < friction * weight;
     let state = if settles { "settled" } else { "rest" };
+    let usual = Observe::default();
+    let samples = samples_that_meet(rings as u32, usual.profile_bins, usual.samples_per_period);
+    if samples != usual.samples_per_period {
+        text += &format!("\n[observe]\nsamples_per_period = {samples}\n");
+    }
     text + &format!(
         "\n[initial]\nstate = {state:?}\n\n[run]\nperiods = {:?}\n",
         drive.periods

@@ -46,6 +46,16 @@ impl Compared {
     pub fn is_inside(&self) -> bool {
         self.distance <= WITHIN
     }
+
+    /// Where the value lies, in a word: none within the published range; `near` where it is beyond it by less than tubes
+    /// that count as alike differ.
+    pub fn place(&self) -> &'static str {
+        match self.distance {
+            0.0 => "",
+            _ if self.is_inside() => "near",
+            _ => "outside",
+        }
+    }
 }
 
 /// The flow to expect of a start.

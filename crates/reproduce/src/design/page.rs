@@ -35,15 +35,17 @@ pub fn page(design: &Design, name: &str, lines: &str) -> String {
                             }
                         }
                         h2 { "Dimensionless groups" }
-                        table {
-                            thead { tr { th { "group" } th { "here" } th { "published" } th { "" } } }
-                            tbody {
-                                @for group in &design.groups {
-                                    tr {
-                                        td { (group.meaning) }
-                                        td { (rounded(group.value)) }
-                                        td { (rounded(group.published[0])) " to " (rounded(group.published[1])) }
-                                        td { @if !group.is_inside() { b { "outside" } } }
+                        div.scroll {
+                            table {
+                                thead { tr { th { "group" } th { "here" } th { "published" } th { "" } } }
+                                tbody {
+                                    @for group in &design.groups {
+                                        tr {
+                                            td { (group.meaning) }
+                                            td { (rounded(group.value)) }
+                                            td { (rounded(group.published[0])) " to " (rounded(group.published[1])) }
+                                            td { b { (group.place()) } }
+                                        }
                                     }
                                 }
                             }

@@ -243,8 +243,10 @@ fn newtonian_fluid(summary: &Summary, last: f64) -> Vec<Line> {
         Some(line.tint(Tint::Green).pattern(pattern))
     };
     let (bore, clear_bore) = summary.newtonian.unzip();
-    let name = "Newtonian fluid (Shapiro et al. 1969), *φ* = *b*/*a*";
-    let in_bore = level(bore, name, Pattern::Dashed);
+    // The load of a fluid counts against its viscosity, which grains do not have.
+    let load = summary.pumping.as_ref().map_or("", |_| " without load");
+    let name = format!("Newtonian fluid{load} (Shapiro et al. 1969), *φ* = *b*/*a*");
+    let in_bore = level(bore, &name, Pattern::Dashed);
     let name = "the same, clear bore, *φ* = *b*/(*a* − *d*/2)";
     let in_clear_bore = level(clear_bore.flatten(), name, Pattern::DashDotted);
     in_bore.into_iter().chain(in_clear_bore).collect()

@@ -52,6 +52,7 @@ impl Caption {
         let notes = if is_moving {
             let flow = match frame.value("flow_rate_ratio") {
                 Some(ratio) if ratio.is_finite() => format!(" = {}", decimal(ratio, 2)),
+                _ if frame.grains == 0 => ": no grains".to_owned(),
                 _ => ": not yet".to_owned(),
             };
             vec![instant, place, format!("*J*/*J*_{{max}}{flow}")]

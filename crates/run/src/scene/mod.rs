@@ -118,6 +118,11 @@ impl Look {
         self.contacts || self.field == Field::Pressure
     }
 
+    /// Whether values count from the first frame, so that a picture needs one before its own.
+    pub fn counts_from_first(&self) -> bool {
+        self.field == Field::AxialDisplacement
+    }
+
     /// Refuses what shows nothing of a tube of a length \[d\].
     fn check(&self, length: f64) -> Result<(), RunError> {
         if !WIDTHS.contains(&self.width) {

@@ -151,11 +151,20 @@ impl TrajectoryPlan {
         };
         let from = place(request.window.from)?.unwrap_or(0);
         let until = place(request.window.to)?;
+        let time = |step| step as f64 * configuration.run.time_step;
+        if let Some(until) = until.filter(|until| *until < from) {
+            let reason = format!(
+                "the window is reversed: it begins at t = {}, and ends before, at t = {}",
+                time(from),
+                time(until)
+            );
+            let help = WINDOW_HELP;
+            return Err(RunError::Trajectory { reason, help });
+        }
         let to = until.map_or(end, |until| until.min(end));
         // A trajectory that begins in the middle of a run keeps to the frames that it would have had from the start.
         let first = from + now.saturating_sub(from).div_ceil(interval) * interval;
         if first > to {
-            let time = |step| step as f64 * configuration.run.time_step;
             let reason = format!(
                 "none of its frames lies in the window: the run goes from t = {} to t = {}, the window begins at t = {}",
                 time(now),

@@ -2,6 +2,7 @@
 
 mod holding;
 mod leaking;
+mod sampling;
 mod seen;
 mod softness;
 mod threshold;
@@ -11,6 +12,7 @@ use peristalsis_configuration::{Configuration, Control, Schedule, ScheduledParam
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::wall::Arrangement;
 
+pub use sampling::samples_that_meet;
 pub use softness::overlap_at_wave_speed;
 pub use warning::Warning;
 
@@ -66,7 +68,9 @@ fn of_constants(configuration: &Configuration) -> Vec<Warning> {
     }
     warnings.extend(holding::warnings(configuration));
     warnings.extend(prescribed_wall_warnings(configuration));
+    warnings.extend(wide_grains(configuration));
     warnings.extend(threshold::out_of_reach(configuration));
+    warnings.extend(sampling::warning(configuration));
     warnings
 }
 
@@ -117,6 +121,19 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
     warnings
 }
 
+/// That a grain does not fit into the straight tube.
+fn wide_grains(configuration: &Configuration) -> Option<Warning> {
+    let (largest, wall) = (configuration.grains.diameter_max, configuration.wall);
+    let bore = 2.0 * configuration.tube.radius - wall.sphere_diameter;
+    let message = format!(
+        "a grain of diameter {largest} is wider than the clear bore of the straight tube, 2 a - d_w = {bore:.3}: the wall \
+         presses into it, however weak the drive; take smaller grains, or tube.radius = {:.3} or more",
+        0.5 * (largest + wall.sphere_diameter)
+    );
+    let key = "grains.diameter_max";
+    (largest > bore && configuration.grains.number > 0).then_some(Warning { key, message })
+}
+
 /// That the run ends before a schedule has come to its last value.
 fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
     let periods = configuration.run.periods?;
@@ -128,6 +145,11 @@ fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
          schedule"
     );
     (rest > periods).then_some(Warning { key, message })
+}
+
+/// The longest time step that a contact is resolved with \[t\].
+pub fn longest_time_step(configuration: &Configuration) -> f64 {
+    contact_time(configuration) / STEPS_PER_CONTACT
 }
 
 /// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.
@@ -159,5 +181,27 @@ fn span(time: f64) -> String {
         format!("{time:.2e}")
     } else {
         format!("{time:.3}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grains_that_are_wider_than_the_tube_are_warned_of() {
+        // Clear bore 2 a - d_w = 2.
+        for (diameter, key) in [
+            ("1.8", None),
+            ("2", None),
+            ("2.4", Some("grains.diameter_max")),
+        ] {
+            let sizes = ["min", "max"].map(|it| format!("grains.diameter_{it}={diameter}"));
+            let [least, largest] = sizes;
+            let settings = [least, largest, "grains.number=3".to_owned()];
+            let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+            let found = wide_grains(&configuration);
+            assert_eq!(found.as_ref().map(|it| it.key), key, "{found:?}");
+        }
     }
 }

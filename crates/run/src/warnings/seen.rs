@@ -28,7 +28,9 @@ pub(super) fn warnings(run: &Run) -> Vec<Warning> {
         warnings.push(packed_too_densely(configuration, packed, limit));
     }
     let overlap = run.simulation().ledger().largest_overlap / diameter;
-    if run.simulation().step() > 0 && overlap > packed.max(limit) {
+    // No drive makes room for grains that are wider than the tube, which is said already.
+    let fits = super::wide_grains(configuration).is_none();
+    if run.simulation().step() > 0 && overlap > packed.max(limit) && fits {
         warnings.push(overlapped(configuration, overlap, limit));
     }
     warnings.extend(left(run, packed > limit));

@@ -14,12 +14,15 @@ use crate::store::entry::Entry;
 use crate::store::run_files::RunFiles;
 
 /// Content of an archive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Packed {
     /// Runs in it.
     pub runs: usize,
     /// Runs that were taken over. An import takes runs that were not finished here and whose hashes check.
     pub taken: usize,
+    /// Runs of an archive that were left out since they are not finished or their files differ from their seal, with the
+    /// reason.
+    pub refused: Vec<(Identity, String)>,
 }
 
 impl Store {
@@ -87,15 +90,23 @@ impl Store {
         let leases = index.leases(super::LEASE_TIMEOUT)?;
         let mut packed = Packed {
             runs: identities.len(),
-            taken: 0,
+            ..Packed::default()
         };
         for identity in identities {
-            let finished = known.get(identity).is_some_and(Entry::is_computed);
             let unpacked = RunFiles::new(scratch, *identity);
-            if finished
-                || leases.contains_key(identity)
-                || !matches!(unpacked.verdict(None), Verdict::Done { .. })
-            {
+            let reason = match unpacked.verdict(None) {
+                Verdict::Done { .. } => None,
+                Verdict::Damaged(reason) => Some(reason),
+                Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
+                    Some("it is not finished".to_owned())
+                }
+            };
+            if let Some(reason) = reason {
+                packed.refused.push((*identity, reason));
+                continue;
+            }
+            let finished = known.get(identity).is_some_and(Entry::is_computed);
+            if finished || leases.contains_key(identity) {
                 continue;
             }
             let target = self.run_folder(*identity);

@@ -17,7 +17,8 @@ impl Store {
     /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many it has.
     ///
     /// The table is copied into the store. A run that is finished here stays as it is. The table is
-    /// refused if a row has other parameters than the study's run of its identity.
+    /// refused if a row has other parameters than the study's run of its identity, or none that a finished run has, or if
+    /// two rows of one identity differ.
     ///
     /// # Errors
     /// [`StudyError::NotRows`] and errors of reading.
@@ -30,11 +31,14 @@ impl Store {
         let survey = self.survey()?;
         let runs = survey.plan.runs().iter().map(|run| (run.identity, run));
         let runs: HashMap<Identity, &PlannedRun> = runs.collect();
+        let mut first_of: HashMap<Identity, &Row> = HashMap::new();
         for row in &rows {
+            let before = *first_of.entry(row.identity()).or_insert(row);
             let contradiction = runs
                 .get(&row.identity())
-                .and_then(|run| row.contradiction(&survey.plan.configuration(run)))
-                .or_else(|| row.impossible());
+                .and_then(|run| row.contradiction(run.replicate, &survey.plan.configuration(run)))
+                .or_else(|| row.impossible())
+                .or_else(|| row.conflict(before));
             if let Some(reason) = contradiction {
                 return Err(StudyError::not_rows(path)(reason));
             }

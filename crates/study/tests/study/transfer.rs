@@ -77,27 +77,45 @@ fn a_row_that_contradicts_its_run_is_refused_with_its_table() {
     first.tables();
     let text = fs::read_to_string(first.path("tables/small.csv")).unwrap();
     let head = text.lines().find(|line| line.contains("identity")).unwrap();
-    let mut names = head.split(',');
-    let place = names.position(|name| name == "strain_rate").unwrap();
-    let edited: Vec<String> = text
-        .lines()
-        .map(|line| {
-            let mut cells: Vec<&str> = line.split(',').collect();
-            if line != head && !line.starts_with('#') {
-                cells[place] = "0.07";
-            }
-            cells.join(",")
-        })
-        .collect();
-    let table = first.path("tables/edited.csv");
-    fs::write(&table, edited.join("\n") + "\n").unwrap();
+    let is_row = |line: &str| line != head && !line.starts_with('#');
+    let edited = |line: &str, column: &str, value: &str| {
+        let place = head.split(',').position(|name| name == column).unwrap();
+        let mut cells: Vec<&str> = line.split(',').collect();
+        cells[place] = value;
+        cells.join(",")
+    };
     let second = Place::new(SMALL);
-    let error = second.store().import_table(&table).unwrap_err();
-    assert!(
-        matches!(&error, StudyError::NotRows { reason, .. } if reason.contains("strain_rate")),
-        "{error}"
-    );
-    assert_eq!(second.store().rows().unwrap().rows(), 0);
+    let refuses = |lines: Vec<String>, column: &str| {
+        let table = first.path("tables/edited.csv");
+        fs::write(&table, lines.join("\n") + "\n").unwrap();
+        let error = second.store().import_table(&table).unwrap_err();
+        assert!(
+            matches!(&error, StudyError::NotRows { reason, .. } if reason.contains(column)),
+            "{column}: {error}"
+        );
+        assert_eq!(second.store().rows().unwrap().rows(), 0);
+    };
+    for (column, value) in [
+        ("strain_rate", "0.07"),
+        ("replicate", "9"),
+        ("status", "\"done\""),
+    ] {
+        let lines = text.lines().map(|line| match is_row(line) {
+            true => edited(line, column, value),
+            false => line.to_owned(),
+        });
+        refuses(lines.collect(), column);
+    }
+    // One run twice: with other numbers, and the same again.
+    let last = text.lines().last().unwrap();
+    let mut twice: Vec<String> = text.lines().map(str::to_owned).collect();
+    twice.push(edited(last, "flow_rate_ratio", "0.5"));
+    refuses(twice.clone(), "flow_rate_ratio");
+    *twice.last_mut().unwrap() = last.to_owned();
+    let table = first.path("tables/twice.csv");
+    fs::write(&table, twice.join("\n") + "\n").unwrap();
+    assert_eq!(second.store().import_table(&table).unwrap(), 7);
+    assert_eq!(second.store().rows().unwrap().rows(), 6);
 }
 
 #[test]
@@ -198,6 +216,10 @@ fn archives_hold_whole_runs_and_are_the_same_bytes_for_the_same_runs() {
     let third = Place::new(SMALL);
     let taken = third.store().import_archive(&archive).unwrap();
     assert_eq!((taken.runs, taken.taken), (6, 5));
+    let [(_, reason)] = &taken.refused[..] else {
+        panic!("{taken:?}");
+    };
+    assert!(reason.contains("row.csv"), "{reason}");
     third.complete();
     assert_eq!(third.tables(), tables);
 }

@@ -106,10 +106,15 @@ impl Study {
         table: Table,
         design: Option<&Specification>,
     ) -> Result<Self, ViewerError> {
-        identities(&table).map_err(|reason| ViewerError::NotRows {
+        let refused = |reason| ViewerError::NotRows {
             name: name.to_owned(),
             reason,
-        })?;
+        };
+        // Before the identities: a column without values has no kind.
+        if table.rows() == 0 {
+            return Err(refused("it has no rows".to_owned()));
+        }
+        identities(&table).map_err(refused)?;
         let said = |key: &str| table.metadata().get(key).cloned();
         let name = said("peristalsis.study").unwrap_or_else(|| name.to_owned());
         let title = said("peristalsis.title").unwrap_or_default();

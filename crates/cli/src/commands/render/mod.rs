@@ -16,7 +16,7 @@ use serde_json::json;
 pub(crate) use self::arguments::RenderArguments;
 use self::arguments::{Origin, ViewName};
 use crate::choice::Format;
-use crate::commands::{counted, print, refuse_loss, say, say_if_replaced};
+use crate::commands::{counted, packing, print, refuse_loss, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::stop::Stop;
@@ -182,8 +182,11 @@ fn still(
                 "leave --at out, or take --from trajectory or --from start",
             ));
         }
-        let frame = FrameSource::now(&run, with_contacts);
-        return Ok(Some(draw(&run, look, &[frame])?));
+        let mut frames = vec![FrameSource::now(&run, with_contacts)];
+        if look.counts_from_first() {
+            frames.insert(0, FrameSource::now(&start_of(&run)?, with_contacts));
+        }
+        return Ok(Some(draw(&run, look, &frames)?));
     }
     if let Some(path) = trajectory(arguments, look)? {
         let frames = FrameSource::nearest(&path, arguments.at)?;
@@ -209,6 +212,18 @@ fn still(
         }
     }
     Ok(None)
+}
+
+/// The same run at t = 0.
+fn start_of(run: &Run) -> Result<Run, Failure> {
+    let configuration = run.configuration().clone();
+    packing(&configuration.clone(), || Run::new(configuration)).map_err(|error| match error {
+        RunError::NotPlaced => Failure::usage(
+            "displacements count from the start of the run, where a program placed its grains",
+            "take --from trajectory, if there is one, or another --colour",
+        ),
+        other => other.into(),
+    })
 }
 
 /// The picture of the last of some frames.

@@ -17,7 +17,7 @@ use peristalsis_run::{
 
 use crate::arguments::{RunArguments, Threads};
 use crate::commands::trajectory::{in_words as in_one_line, request};
-use crate::commands::{counted, print, rounded, say, tell, warn_besides};
+use crate::commands::{counted, packing, print, rounded, say, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
@@ -29,8 +29,6 @@ use self::work::{Ending, Work};
 
 /// Where runs go that are given no folder.
 pub(crate) const RUNS: &str = "runs";
-/// Grains whose packing takes long enough to say so.
-const SLOW_PACKING: u64 = 5_000;
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if let Some(replicates) = replicates::replicates(arguments)? {
@@ -190,12 +188,12 @@ fn packed(
     configuration: Configuration,
     stop: &Stop,
 ) -> Result<Run, Failure> {
-    let grains = configuration.grains.number;
-    if grains > SLOW_PACKING {
-        let words = format!("packing {grains} grains; Ctrl-C stops it");
-        tell(arguments.quiet, &words);
-    }
-    let run = Run::new_unless(configuration, &|| stop.is_asked_for());
+    let described = configuration.clone();
+    let pack = || Run::new_unless(configuration, &|| stop.is_asked_for());
+    let run = match arguments.quiet {
+        true => pack(),
+        false => packing(&described, pack),
+    };
     run.map_err(|error| locate(error, &arguments.configuration))
 }
 

@@ -1,5 +1,6 @@
 //! The results of a run, in words.
 
+use peristalsis_analysis::CONFIRMATION_PERIODS;
 use peristalsis_analysis::number::{known_error, with_error};
 use peristalsis_configuration::{HOUR, Units};
 use peristalsis_reproduce::report::plain_text;
@@ -35,6 +36,10 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
             configuration.observe.transition_threshold
         ),
         None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
+        None if run.recorder().periods() < u64::from(CONFIRMATION_PERIODS) => format!(
+            "too short to tell of a transition: {} periods, and {CONFIRMATION_PERIODS} whole ones in a row confirm it",
+            tenths(summary.time * configuration.drive.strain_rate)
+        ),
         None => format!(
             "no transition within {} periods",
             tenths(summary.time * configuration.drive.strain_rate)
@@ -274,9 +279,10 @@ fn tenths(periods: f64) -> String {
 fn efficiency(pumping: &Pumping) -> String {
     let (efficiency, _) = pumping.efficiency;
     if efficiency.is_nan() {
-        let reason = match pumping.useful_power.0 > 0.0 {
-            true => "the wall gives no power: stored energy is spent",
-            false => "the grains do not go against the body force",
+        let reason = match pumping.useful_power.0 {
+            power if power.is_nan() => "nothing was measured",
+            power if power > 0.0 => "the wall gives no power: stored energy is spent",
+            _ => "the grains do not go against the body force",
         };
         return format!("efficiency – ({reason})");
     }
@@ -304,5 +310,6 @@ mod tests {
         assert!(said(1.0, 1.5).contains("stored energy is spent; run longer"));
         assert!(said(1.0, f64::NAN).starts_with("efficiency – (the wall"));
         assert!(said(-1.0, f64::NAN).starts_with("efficiency – (the grains"));
+        assert!(said(f64::NAN, f64::NAN).starts_with("efficiency – (nothing was measured"));
     }
 }

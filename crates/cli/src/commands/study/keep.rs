@@ -118,9 +118,15 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
         Some(file) => Store::create(path, &Specification::read(file)?)?,
         None => Store::open(path)?,
     };
+    let mut is_whole = true;
     for file in &arguments.files {
         if is_archive(file) {
             let packed = store.import_archive(file)?;
+            is_whole &= packed.refused.is_empty();
+            for (identity, reason) in &packed.refused {
+                let file = file.display();
+                say(&format!("run {identity} of {file} is left out: {reason}"));
+            }
             let (taken, runs, file) = (packed.taken, counted(packed.runs, "run"), file.display());
             print(&format!("{taken} of {runs} taken from {file}\n"))?;
         } else {
@@ -132,7 +138,7 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
             ))?;
         }
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(code_of(is_whole))
 }
 
 /// Whether a file is an archive of [`Store::pack`], by its name.

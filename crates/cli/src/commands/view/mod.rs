@@ -13,7 +13,7 @@ use peristalsis_viewer::{Options, Recording, Viewer};
 
 use crate::arguments::{ConfigurationArguments, ViewArguments};
 use crate::commands::run::threads_of;
-use crate::commands::{print, say};
+use crate::commands::{packing, print, say};
 use crate::failure::Failure;
 use crate::sources::{self, known_presets};
 use crate::stop::Stop;
@@ -28,7 +28,12 @@ pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
         }
         (None, Some(path)) => play(&path, arguments.port)?,
         (None, None) => {
-            let (mut run, options) = open(arguments)?;
+            // A signal is how it ends, also while it packs.
+            stop.keep_results();
+            let (mut run, options) = match open(arguments, &stop) {
+                Err(_) if stop.is_asked_for() => return Ok(ExitCode::SUCCESS),
+                outcome => outcome?,
+            };
             let threads = threads_of(arguments.threads, &run, processors());
             run.compute_with(Instructions::widest(), threads)?;
             Viewer::open(run, options)?
@@ -119,7 +124,13 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
 }
 
 /// The run to show, and how to serve it.
-fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
+fn open(arguments: &ViewArguments, stop: &Stop) -> Result<(Run, Options), Failure> {
+    let packed = |configuration: Configuration| {
+        let described = configuration.clone();
+        packing(&described, || {
+            Run::new_unless(configuration, &|| stop.is_asked_for())
+        })
+    };
     let options = |title: String, record| Options {
         port: arguments.port,
         title,
@@ -133,7 +144,7 @@ fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
             return Ok((run, options(title, Vec::new())));
         }
         let record = run.recorder().samples().to_vec();
-        let again = Run::new(run.configuration().clone())?;
+        let again = packed(run.configuration().clone())?;
         return Ok((again, options(title, record)));
     }
     let named = arguments.source.to_str().filter(|it| preset(it).is_some());
@@ -149,7 +160,7 @@ fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
         ..ConfigurationArguments::default()
     };
     let title = sources::name(&configuration);
-    let run = Run::new(sources::configuration(&configuration)?)
+    let run = packed(sources::configuration(&configuration)?)
         .map_err(|error| sources::locate(error, &configuration))?;
     Ok((run, options(title, Vec::new())))
 }

@@ -103,6 +103,17 @@ fn packing_that_is_stopped_says_so_and_leaves_nothing() {
     assert!(!place.path("many/seed-1/state.checkpoint").exists());
 }
 
+/// A signal is how `view` ends, before its page is there too.
+#[cfg(unix)]
+#[test]
+fn view_says_that_it_packs_and_ends_well_while_it_does() {
+    let place = Place::new();
+    let (_, settings) = MANY.split_once("frictionless").unwrap();
+    let child = place.start(&format!("view frictionless{settings}"));
+    let (code, said) = stopped_while_packing(child);
+    assert_eq!(code, Some(0), "{said}");
+}
+
 /// COMMAND-LINE, low: the same in a study.
 #[cfg(unix)]
 #[test]
