@@ -12,11 +12,15 @@ use peristalsis_run::{PlacedGrains, Run, contacts_table, warnings};
 const TUBE: &str = "tube.waves=2 initial.state=placed";
 
 fn placed(settings: &str, positions: &[DVec3]) -> Result<Run, String> {
+    moving(settings, positions, &vec![DVec3::ZERO; positions.len()])
+}
+
+fn moving(settings: &str, positions: &[DVec3], velocities: &[DVec3]) -> Result<Run, String> {
     let number = positions.len();
     let words = format!("{TUBE} grains.number={number} {settings}");
     let grains = PlacedGrains {
         positions: positions.to_vec(),
-        velocities: vec![DVec3::ZERO; number],
+        velocities: velocities.to_vec(),
         diameters: vec![1.0; number],
     };
     Run::placed(configuration("frictionless", &words), grains).map_err(|error| error.to_string())
@@ -90,6 +94,33 @@ fn placed_grains_go_on_from_a_checkpoint_with_the_same_bits() {
     }
     assert_eq!(run.simulation().bodies(), again.simulation().bodies());
     assert!(run.configuration().to_toml().contains("state = \"placed\""));
+}
+
+/// Grains taken from jammed flow are jammed at t = 0, and those that coast as fast as they coast.
+#[test]
+fn the_search_for_a_transition_begins_with_the_velocities_of_the_grains() {
+    let settings = "tube.waves=2 run.periods=5";
+    let jammed = format!("{settings} initial.state=jammed");
+    let mut jammed = Run::new(configuration("frictionless", &jammed)).unwrap();
+    let bodies = jammed.simulation().bodies();
+    let grains = 0..bodies.grains;
+    let (positions, velocities) = (&bodies.position[grains.clone()], &bodies.velocity[grains]);
+    let mut again = moving("run.periods=5", positions, velocities).unwrap();
+    let coasting = format!("{settings} drive.width=3 initial.axial_velocity=0.3");
+    let mut coasting = Run::new(configuration("frictionless", &coasting)).unwrap();
+    for run in [&mut jammed, &mut again, &mut coasting] {
+        while !run.is_complete() {
+            run.advance().unwrap();
+        }
+    }
+    let averages = |run: &Run| run.recorder().averages().to_vec();
+    assert_eq!(averages(&jammed), averages(&again));
+    let times = jammed.recorder().transition_times();
+    assert_eq!(times, again.recorder().transition_times());
+    // They begin at 0.3/c = 0.6, and slow down to 0.56: no threshold is crossed that lies below.
+    let ratios = averages(&coasting);
+    assert!(ratios[0] < 0.6 && ratios[4] > 0.5, "{ratios:?}");
+    assert_eq!(coasting.recorder().transition_times()[..5], [None; 5]);
 }
 
 /// PYTHON, medium 7.
