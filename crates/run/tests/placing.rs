@@ -7,7 +7,7 @@ use glam::DVec3;
 use peristalsis_configuration::ScheduledParameter;
 use peristalsis_observe::{Load, clear_volume, grain_contacts};
 use peristalsis_physics::contact::NormalLaw;
-use peristalsis_run::{PlacedGrains, Run, contacts_table, warnings};
+use peristalsis_run::{PlacedGrains, Run, Status, Summary, contacts_table, warnings};
 
 const TUBE: &str = "tube.waves=2 initial.state=placed";
 
@@ -121,6 +121,29 @@ fn the_search_for_a_transition_begins_with_the_velocities_of_the_grains() {
     let ratios = averages(&coasting);
     assert!(ratios[0] < 0.6 && ratios[4] > 0.5, "{ratios:?}");
     assert_eq!(coasting.recorder().transition_times()[..5], [None; 5]);
+}
+
+/// One grain rests; one is shot through the wall, and past the outlet outside of it.
+#[test]
+fn what_has_leaked_closes_the_balance_of_an_open_tube() {
+    let places = [DVec3::new(0.0, 0.0, 4.0), DVec3::new(1.0, 0.0, 12.0)];
+    let shot = DVec3::new(4.0, 0.0, 2.0);
+    let open = "tube.ends=open inlet.feed_rate=0 run.periods=1";
+    let mut run = moving(open, &places, &[DVec3::ZERO, shot]).unwrap();
+    while !run.is_complete() {
+        run.advance().unwrap();
+    }
+    let (samples, mut before) = (run.recorder().samples(), 0.0);
+    let through_ends = samples.iter().map(|it| {
+        let interval = it.time - core::mem::replace(&mut before, it.time);
+        interval * (it.feed_rate - it.return_rate - it.discharge_rate)
+    });
+    let through_ends: f64 = through_ends.sum();
+    let summary = Summary::of(&run, Status::Complete, None);
+    let leaked = summary.discharge.unwrap().leaked;
+    assert_eq!(leaked, 1.0);
+    assert_eq!(samples.last().unwrap().hold_up, 2.0 + through_ends - leaked);
+    assert!(summary.to_json().contains("\"leaked\": 1.0"));
 }
 
 /// PYTHON, medium 7.
