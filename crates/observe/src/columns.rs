@@ -88,7 +88,7 @@ pub const COLUMNS: &[Column] = &[
     row("wall_work", "m d^2/t^2", Always, "ledger: work of the prescribed wall", |s| s.ledger.wall_work),
     row("normal_dissipated", "m d^2/t^2", Always, "ledger: lost along normals", |s| s.ledger.normal_dissipated),
     row("rotational_energy", "m d^2/t^2", Friction, "sum I omega^2/2", |s| s.rotational_energy),
-    row("sliding_fraction", "1", Friction, "part of the contacts that slide", |s| s.sliding_fraction),
+    row("sliding_fraction", "1", Friction, "part of the contacts that slide, as those without a normal force do", |s| s.sliding_fraction),
     row("tangential_dissipated", "m d^2/t^2", Friction, "ledger: lost to tangential damping", |s| s.ledger.tangential_dissipated),
     row("sliding_dissipated", "m d^2/t^2", Friction, "ledger: lost to sliding", |s| s.ledger.sliding_dissipated),
     row("history_reset", "m d^2/t^2", Friction, "ledger: tangential spring energy forgotten where spheres parted; with the normal force gone before, it counts as sliding", |s| s.ledger.history_reset),
