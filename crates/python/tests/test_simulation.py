@@ -238,6 +238,15 @@ def test_callbacks_see_every_so_many_steps_and_cannot_advance(small: Simulation)
     assert same(small, plain)
 
 
+def test_callbacks_see_samples_in_however_many_pieces_a_simulation_is_run() -> None:
+    sim = Simulation.preset("frictionless", waves=2, seed=1)
+    seen: list[int] = []
+    for _ in range(30):
+        sim.step(3, callback=lambda it: seen.append(it.steps))
+    each = sim._run.steps_per_sample
+    assert seen == list(range(each, 91, each)) and len(seen) == len(sim.timeseries()["time"])
+
+
 def test_what_a_callback_raises_ends_the_run_and_keeps_it(small: Simulation) -> None:
     plain = small.copy()
 

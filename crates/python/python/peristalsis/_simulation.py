@@ -90,8 +90,8 @@ class Simulation(Made):
             Show how far it is: by tqdm where that is installed, otherwise on standard error; or tell the logger
             ``peristalsis`` every ten seconds.
         callback : callable, or iterable of callables and (callable, every) pairs, optional
-            Called with this simulation every `every` steps, in this order. It may read everything and change the drive;
-            it cannot advance. What it raises ends the run.
+            Called with this simulation where the steps since its start are a multiple of `every`, in this order. It may
+            read everything and change the drive; it cannot advance. What it raises ends the run.
         every : int, optional
             Steps from one call to the next; by default those from sample to sample.
         writers : iterable of Writer, optional

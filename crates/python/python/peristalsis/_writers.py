@@ -26,7 +26,8 @@ class Trigger:
     def __init__(self, act: Callable[[Simulation], object], now: int, every: int) -> None:
         self.act: Callable[[Simulation], object] = act
         self.every: int = every
-        self._due: int | None = now + every
+        # At the multiples of `every`, and so at samples: in however many pieces a simulation is run.
+        self._due: int | None = now + every - now % every
 
     def _fire(self, simulation: Simulation) -> None:
         """Does it, and waits for the next step."""
