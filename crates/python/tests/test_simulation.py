@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import peristalsis
-from peristalsis import ConfigurationError, DoesNotFitError, Simulation, SnapshotError
+from peristalsis import ConfigurationError, DoesNotFitError, Simulation, SnapshotError, Writer
 
 
 def same(one: Simulation, other: Simulation) -> bool:
@@ -236,6 +236,23 @@ def test_callbacks_see_every_so_many_steps_and_cannot_advance(small: Simulation)
     assert seen[1][1] == plain.positions[0, 2]
     plain.step(40)
     assert same(small, plain)
+
+
+def test_periods_are_wavelengths_that_the_wave_runs_under_a_schedule_too(tmp_path: Path) -> None:
+    ramp = {"form": "ramp", "parameter": "strain_rate", "from": 0.0, "to": 0.05, "end": 2}
+    sim = Simulation.preset("frictionless", {"drive.schedule": ramp}, waves=2, seed=2)
+    writer = Writer(tmp_path / "run.gsd", every=0.25, at=[0.6, "1t"])
+    sim.run(periods=1, writers=[writer])
+    # It is half as fast on average, and one wavelength has passed in two nominal periods.
+    assert sim.period == pytest.approx(1, abs=0.002) and sim.time == pytest.approx(40, abs=0.1)
+    assert writer.frames == 1 + 4 + 2
+    sim.run(periods=2)
+    assert sim.time == pytest.approx(80, abs=0.1)
+    pause = {"form": "steps", "parameter": "strain_rate", "at": [1], "values": [0.0]}
+    sim = Simulation.preset("frictionless", {"drive.schedule": pause}, waves=2, seed=2)
+    with pytest.raises(ConfigurationError, match=r"stands still before it has run 1\.5 periods"):
+        sim.run(periods=1.5)
+    assert sim.steps == 0
 
 
 def test_callbacks_see_samples_in_however_many_pieces_a_simulation_is_run() -> None:
