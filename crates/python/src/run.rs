@@ -337,6 +337,12 @@ impl Run {
         self.look(py, |run| run.simulation().wall().cycles())
     }
 
+    /// Length of the tube, of an open one between its ends.
+    #[getter]
+    fn length(&self, py: Python<'_>) -> f64 {
+        self.look(py, |run| run.simulation().length())
+    }
+
     /// +1 where the wave runs towards +z, -1 where towards -z.
     #[getter]
     fn heading(&self, py: Python<'_>) -> f64 {

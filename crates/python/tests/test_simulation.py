@@ -255,6 +255,17 @@ def test_periods_are_wavelengths_that_the_wave_runs_under_a_schedule_too(tmp_pat
     assert sim.steps == 0
 
 
+def test_flow_rates_of_an_open_tube_are_over_the_length_between_its_ends() -> None:
+    sim = Simulation.preset("silo", seed=1)
+    sim.step(sim._run.steps_per_sample)
+    series = sim.timeseries()
+    inside = sim.positions[:, 2] if sim.heading > 0 else sim.configuration.length - sim.positions[:, 2]
+    present = (inside >= 0) & (inside <= sim.length) & (np.hypot(*sim.positions[:, :2].T) < 2 * sim.wall_radius().max())
+    flow = sim.heading * sim.velocities[present, 2].sum() / sim.length
+    assert series["flow_rate_instantaneous"][-1] == pytest.approx(flow)
+    assert sim.length == pytest.approx(sim.configuration.length - 4 * sim.diameters.max())
+
+
 def test_callbacks_see_samples_in_however_many_pieces_a_simulation_is_run() -> None:
     sim = Simulation.preset("frictionless", waves=2, seed=1)
     seen: list[int] = []

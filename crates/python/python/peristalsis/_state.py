@@ -165,7 +165,7 @@ class State:
 
     @property
     def length(self) -> float:
-        """L [d], length of the tube.
+        """L [d], length of the tube over which J is taken: waves times lambda, of an open tube less, between its ends.
 
         Examples
         --------
@@ -174,7 +174,7 @@ class State:
         >>> sim.length
         20.0
         """
-        return self._run.configuration.length
+        return self._run.length
 
     @property
     def heading(self) -> float:
@@ -340,7 +340,7 @@ class State:
         ----------
         z : array_like, optional
             Places along the tube [d], taken round it where they lie beyond its ends; by default 64 a wave, evenly from 0:
-            ``np.arange(64 * waves) * length / (64 * waves)``.
+            ``np.arange(64 * waves) * wavelength / 64``.
 
         Returns
         -------
@@ -357,7 +357,7 @@ class State:
         """
         if z is None:
             number = _PLACES * self._run.configuration.waves
-            z = np.arange(number) * (self.length / number)
+            z = np.arange(number) * (self._run.configuration.length / number)
         places = numbers("z", z)
         if not np.isfinite(places).all():
             raise ValueError("z is a place along the tube: a finite number")
