@@ -178,7 +178,7 @@ pub struct ProfileBin {
     pub density: (f64, f64),
     /// Mean axial velocity along the wave, in the laboratory frame \[d/t\], with its error.
     pub axial_velocity: (f64, f64),
-    /// Granular temperature about the bin's mean velocity \[m d^2/t^2\], with its error.
+    /// Granular temperature about the velocity of the bin's centre of mass \[m d^2/t^2\], with its error.
     pub temperature: (f64, f64),
     /// Mean diameter of the grains, with its error \[d\].
     pub diameter: (f64, f64),
@@ -192,7 +192,8 @@ pub struct ProfileBin {
     pub wall_normal_force: (f64, f64),
     /// Axial force of the wall on the grains by friction, per length of tube \[m/t^2\], with its error.
     pub wall_tangential_force: (f64, f64),
-    /// Pressure on the wall: radial force per area 2 pi R dz, outward \[m/(d t^2)\], with its error.
+    /// Pressure on the wall: radial force per area 2 pi R dz, outward \[m/(d t^2)\], with its error. R reaches to the
+    /// centres of the wall's spheres: the pressure on the clear bore is larger by the factor R/(R - d_w/2).
     pub wall_pressure: (f64, f64),
     /// Shear on the wall along the wave, with its error \[m/(d t^2)\]: the axial force on the wall per area 2 pi R dz
     /// without the force of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.

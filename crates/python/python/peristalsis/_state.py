@@ -305,8 +305,13 @@ class State:
 
         l is the branch vector, from the partner's centre to the grain's or, of a contact with the wall, from where they
         touch to the grain's centre; f is the force on the grain, dv its velocity less the mean of all grains, and V the
-        `volume` that the wall leaves clear. Grains that wait outside an open tube do not count. A third of the trace is the pressure. In a straight tube at rest
-        (sigma[0, 0] + sigma[1, 1])/2 is the pressure on the wall.
+        `volume` that the wall leaves clear. Grains that wait outside an open tube do not count. A third of the trace is the
+        pressure. In a straight tube at rest (sigma[0, 0] + sigma[1, 1])/2 is the pressure on the area 2 pi (R - d_w/2) L of
+        the clear bore. ``wall_pressure`` of `profile` and `summary` is that on the area 2 pi R L through the centres of the
+        wall's spheres, smaller by the factor 1 - d_w/(2 R).
+
+        dv is less the mean over the masses of all grains; ``granular_temperature`` of `timeseries` is about the mean of their
+        velocities, which differs where sizes differ.
 
         Examples
         --------
