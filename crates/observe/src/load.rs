@@ -5,7 +5,7 @@ use peristalsis_engine::{Bodies, Simulation, Touching};
 
 use crate::shape::TubeShape;
 
-/// Places along the tube at which its cross-section is taken, a wavelength.
+/// Places along the tube at which its cross-section is taken, a wavelength, at least.
 const PLACES_A_WAVE: f64 = 256.0;
 
 /// A contact of a grain, with where it is and the lever arms of its spheres.
@@ -166,7 +166,12 @@ fn clear_volume_along(simulation: &Simulation, length: f64) -> f64 {
     let wall = simulation.wall();
     let shape = TubeShape::of(simulation);
     let half = 0.5 * wall.sphere_diameter();
-    let places = (PLACES_A_WAVE * f64::from(wall.waves())).max(1.0);
+    let least = PLACES_A_WAVE * f64::from(wall.waves());
+    let places = match &shape {
+        // As many in each slice.
+        TubeShape::Slices(slices, _) => (least / slices.len() as f64).ceil() * slices.len() as f64,
+        TubeShape::Wave(..) => least.max(1.0),
+    };
     let spacing = length / places;
     let from_outlet = simulation.ends().is_some() && wall.heading() < 0.0;
     let area = |place: u32| {

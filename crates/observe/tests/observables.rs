@@ -8,7 +8,8 @@ use peristalsis_engine::{Bodies, Integrator, OpenEnds, Parameters, Simulation, W
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
     AxialDispersion, COLUMNS, Column, ContactForce, ContactForces, FaultKind, Observer, PROFILE,
-    Quantity, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, note_wall_faults,
+    Quantity, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, clear_volume,
+    note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::ends::Inlet;
@@ -447,6 +448,37 @@ fn the_shape_of_a_prescribed_tube_is_its_wave() {
     let shape = TubeShape::of(&simulation);
     assert!((shape.narrowest() - 5.5).abs() < 1e-12);
     assert!((shape.radius(2.5) - 6.5).abs() < 1e-12);
+}
+
+/// Every ring has the same weight in the volume, 14 of them in a wave.
+#[test]
+fn the_clear_volume_of_an_elastic_wall_is_that_of_its_rings() {
+    let elastic = ElasticWall::new(ElasticParameters {
+        lattice: LATTICE,
+        mean_radius: 6.0,
+        network: ElasticNetwork::default(),
+        force_amplitude: Schedule::constant(0.0),
+        frequency: Schedule::constant(0.1),
+        heading: 1.0,
+        waveform: Waveform::Sine,
+        angle: DriveAngle::Reference,
+    });
+    let radius = |ring: u32| 5.5 + 0.1 * f64::from(ring % 14);
+    let mut bodies = Bodies::grains_at_rest(Vec::new(), Vec::new());
+    for sphere in 0..elastic.lattice().spheres() {
+        let place = elastic.reference(sphere);
+        // In the middle of its slice.
+        let ring = (place.z / 20.0 * 28.0 + 0.5) as u32;
+        let wider = radius(ring) / 6.0;
+        let along = (f64::from(ring) + 0.5) * 20.0 / 28.0;
+        let moved = DVec3::new(wider * place.x, wider * place.y, along);
+        bodies.push_wall_sphere(moved, 1.0, 0.1);
+    }
+    let simulation = Simulation::new(bodies, Wall::Elastic(elastic), parameters());
+    let areas = (0..14).map(|ring| core::f64::consts::PI * (radius(ring) - 0.5).powi(2));
+    let expected = areas.sum::<f64>() * 20.0 / 14.0;
+    let found = clear_volume(&simulation);
+    assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
 }
 
 #[test]

@@ -266,6 +266,14 @@ def test_flow_rates_of_an_open_tube_are_over_the_length_between_its_ends() -> No
     assert sim.length == pytest.approx(sim.configuration.length - 4 * sim.diameters.max())
 
 
+def test_a_path_is_text_and_endings_are_of_either_case(tmp_path: Path) -> None:
+    Writer(tmp_path / "RUN.GSD")
+    path = tmp_path / "grains.csv"
+    path.write_text("diameter,fraction\n0.9,0.5\n1.1,0.5\n")
+    sizes = {"grains.sizes": "table", "grains.file": path}
+    assert peristalsis.Configuration("frictionless", sizes) == peristalsis.Configuration("frictionless", {**sizes, "grains.file": str(path)})
+
+
 def test_callbacks_see_samples_in_however_many_pieces_a_simulation_is_run() -> None:
     sim = Simulation.preset("frictionless", waves=2, seed=1)
     seen: list[int] = []

@@ -471,7 +471,8 @@ class State:
         return self._run.waves()
 
     def summary(self) -> Summary:
-        """The outcome so far, as ``summary.json`` of the command line has it; a number that is not known yet is NaN (there: null).
+        """The outcome so far, as ``summary.json`` of the command line has it. Where that has null a number is NaN if it is not
+        known yet, and `None` if there is none in this run, or none so far: no transition, no friction, an open tube.
 
         Returns
         -------
