@@ -27,7 +27,7 @@ pub struct Touching {
     pub normal_force: f64,
     /// |f_t|, its part in the plane of contact \[m d/t^2\].
     pub tangential_force: f64,
-    /// Whether the contact slides.
+    /// Whether the contact slides: friction is at its bound. That of a contact without a normal force is 0, and it slides.
     pub sliding: bool,
     /// Couple on the first sphere by rolling resistance; the second feels the opposite \[m d^2/t^2\].
     pub couple: DVec3,
@@ -89,7 +89,11 @@ fn answered<N: NormalLaw, T: TangentialLaw>(
     if !law.acts(contact, &history) {
         return None;
     }
+    let slid = law.tangential.slid(&history);
     let answer = law.force(contact, &mut history, 0.0);
+    // Asked again, a contact that slid may just hold: at the bound rounding decides. Only of one that does not press the
+    // history knows nothing.
+    let is_free = answer.tangential.force == DVec3::ZERO && answer.tangential.sliding;
     Some(Touching {
         first,
         second,
@@ -98,7 +102,7 @@ fn answered<N: NormalLaw, T: TangentialLaw>(
         force: answer.force,
         normal_force: answer.force.dot(contact.normal),
         tangential_force: answer.tangential.force.length(),
-        sliding: answer.tangential.sliding,
+        sliding: slid || is_free,
         couple: answer.rolling.couple,
     })
 }

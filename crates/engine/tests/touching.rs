@@ -23,6 +23,29 @@ fn the_forces_of_contacts_add_up_to_the_accelerations_of_the_grains() {
     }
 }
 
+#[test]
+fn contacts_slide_as_the_tally_says_in_each_form_of_sliding() {
+    let wall = strained(coarse(2), -1.0, 2.6, 0.1);
+    for normal in [LINEAR, HERTZ] {
+        for sliding in [Sliding::Spring, Sliding::Balance, Sliding::Literal] {
+            let bodies = packed(60, 1.0, &wall, normal, 5);
+            let friction = CundallStrack {
+                sliding,
+                ..FRICTION
+            };
+            let parameters = parameters(normal, Some(friction), INTEGRATORS[0], 0.01);
+            let simulation = advanced(&bodies, &wall, parameters, 2_000);
+            let found = simulation.touching().iter().filter(|it| it.sliding).count() as u64;
+            let expected = simulation.tally().sliding_contacts;
+            // Whether a contact presses is asked at velocities a little later.
+            assert!(
+                expected > 10 && found.abs_diff(expected) <= 1,
+                "{sliding:?}: {found} slide, not {expected}"
+            );
+        }
+    }
+}
+
 fn assert_forces(simulation: &Simulation, case: &str) {
     let (bodies, tally) = (simulation.bodies(), simulation.tally());
     let touching = simulation.touching();

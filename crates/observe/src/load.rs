@@ -5,7 +5,7 @@ use peristalsis_engine::{Bodies, Simulation, Touching};
 
 use crate::shape::TubeShape;
 
-/// Places along the tube at which its cross-section is taken, a wavelength.
+/// Places along the tube at which its cross-section is taken, a wavelength, at least.
 const PLACES_A_WAVE: f64 = 256.0;
 
 /// A contact of a grain, with where it is and the lever arms of its spheres.
@@ -85,7 +85,8 @@ pub struct Load {
     ///
     /// l is the branch vector: from the partner's centre to the grain's or, of a contact with the wall, from the point of
     /// contact; f is the force on the grain; dv its velocity less the mean of all; V the [`clear_volume`]. Positive in
-    /// compression; a third of the trace is the pressure. Rows are a.
+    /// compression; a third of the trace is the pressure. Rows are a. dv is less the velocity of the centre of mass. On the
+    /// wall it is the pressure on the clear bore, R/(R - d_w/2) times that of a [profile](crate::ProfileBin).
     pub stress: DMat3,
 }
 
@@ -165,7 +166,12 @@ fn clear_volume_along(simulation: &Simulation, length: f64) -> f64 {
     let wall = simulation.wall();
     let shape = TubeShape::of(simulation);
     let half = 0.5 * wall.sphere_diameter();
-    let places = (PLACES_A_WAVE * f64::from(wall.waves())).max(1.0);
+    let least = PLACES_A_WAVE * f64::from(wall.waves());
+    let places = match &shape {
+        // As many in each slice.
+        TubeShape::Slices(slices, _) => (least / slices.len() as f64).ceil() * slices.len() as f64,
+        TubeShape::Wave(..) => least.max(1.0),
+    };
     let spacing = length / places;
     let from_outlet = simulation.ends().is_some() && wall.heading() < 0.0;
     let area = |place: u32| {

@@ -178,7 +178,7 @@ pub struct ProfileBin {
     pub density: (f64, f64),
     /// Mean axial velocity along the wave, in the laboratory frame \[d/t\], with its error.
     pub axial_velocity: (f64, f64),
-    /// Granular temperature about the bin's mean velocity \[m d^2/t^2\], with its error.
+    /// Granular temperature about the velocity of the bin's centre of mass \[m d^2/t^2\], with its error.
     pub temperature: (f64, f64),
     /// Mean diameter of the grains, with its error \[d\].
     pub diameter: (f64, f64),
@@ -192,7 +192,8 @@ pub struct ProfileBin {
     pub wall_normal_force: (f64, f64),
     /// Axial force of the wall on the grains by friction, per length of tube \[m/t^2\], with its error.
     pub wall_tangential_force: (f64, f64),
-    /// Pressure on the wall: radial force per area 2 pi R dz, outward \[m/(d t^2)\], with its error.
+    /// Pressure on the wall: radial force per area 2 pi R dz, outward \[m/(d t^2)\], with its error. R reaches to the
+    /// centres of the wall's spheres: the pressure on the clear bore is larger by the factor R/(R - d_w/2).
     pub wall_pressure: (f64, f64),
     /// Shear on the wall along the wave, with its error \[m/(d t^2)\]: the axial force on the wall per area 2 pi R dz
     /// without the force of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.
@@ -362,11 +363,12 @@ impl WaveFrameProfile {
         self.in_last = 0;
     }
 
-    /// The profile over the last part of what was added, at least one block; `wavelength` in d.
+    /// The profile over the last part of what was added, at least one block; `wavelength` in d, `period` in samples.
     ///
-    /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one.
-    pub fn late(&self, fraction: f64, wavelength: f64) -> Vec<ProfileBin> {
-        let groups = self.late_groups(fraction);
+    /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one. What was added since
+    /// the last whole period counts in the means, not in the errors.
+    pub fn late(&self, fraction: f64, wavelength: f64, period: u64) -> Vec<ProfileBin> {
+        let (groups, whole) = self.late_groups(fraction, period);
         let totals: Vec<Sums> = (0..self.bins)
             .map(|bin| total(groups.iter().map(|group| &group[bin])))
             .collect();
@@ -376,7 +378,7 @@ impl WaveFrameProfile {
             .map(|bin| {
                 let total = totals[bin];
                 let with_error = |value: &dyn Fn(&Sums) -> f64| {
-                    let groups = groups.iter().map(|group| value(&group[bin]));
+                    let groups = groups[..whole].iter().map(|group| value(&group[bin]));
                     (value(&total), standard_error(groups))
                 };
                 let per_length = |wall: &WallSums| 1.0 / (wall.in_tube * bin_width);
@@ -409,17 +411,27 @@ impl WaveFrameProfile {
             .collect()
     }
 
-    /// The last part of the blocks in up to ten equal groups.
-    fn late_groups(&self, fraction: f64) -> Vec<Vec<Sums>> {
-        let blocks = self.blocks.len();
-        let taken = ((blocks as f64 * fraction).round() as usize).clamp(1.min(blocks), blocks);
-        let late = &self.blocks[blocks - taken..];
+    /// The last part of the blocks in up to ten equal groups, and how many these are; where the last block ends within a
+    /// period of so many samples, it follows them as a group of its own.
+    fn late_groups(&self, fraction: f64, period: u64) -> (Vec<Vec<Sums>>, usize) {
+        let is_cut = !self.in_last.is_multiple_of(period);
+        let blocks = self.blocks.len() - usize::from(is_cut);
+        let taken = if is_cut {
+            // No less than the late part, with the block that is cut.
+            let cut = self.in_last as f64 / self.block as f64;
+            ((blocks as f64 + cut) * fraction - cut).ceil()
+        } else {
+            (blocks as f64 * fraction).round()
+        };
+        let taken = (taken as usize).clamp(1.min(blocks), blocks);
+        let (late, cut) = self.blocks[blocks - taken..].split_at(taken);
         let of_group = |group: &[Vec<Sums>]| {
             let bin = |bin: usize| total(group.iter().map(|block| &block[bin]));
             (0..self.bins).map(bin).collect()
         };
-        let groups = late.chunks(late.len().div_ceil(10).max(1));
-        groups.map(of_group).collect()
+        let whole = late.chunks(late.len().div_ceil(10).max(1));
+        let number = whole.len();
+        (whole.chain(cut.chunks(1)).map(of_group).collect(), number)
     }
 }
 

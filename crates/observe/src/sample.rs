@@ -36,7 +36,7 @@ pub struct Sample {
     pub kinetic_energy: f64,
     /// sum I omega^2/2 of the grains.
     pub rotational_energy: f64,
-    /// `sum m |v - <v>|^2/(3 N)` of the grains, escaped ones too, `<v>` their mean velocity.
+    /// `sum m |v - <v>|^2/(3 N)` of the grains, escaped ones too, `<v>` the mean of their velocities, whatever their masses.
     pub granular_temperature: f64,
     /// Mean number of contacts of a grain, escaped ones too, wall included.
     pub contacts: f64,

@@ -8,7 +8,8 @@ use peristalsis_engine::{Bodies, Integrator, OpenEnds, Parameters, Simulation, W
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
     AxialDispersion, COLUMNS, Column, ContactForce, ContactForces, FaultKind, Observer, PROFILE,
-    Quantity, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, note_wall_faults,
+    Quantity, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, clear_volume,
+    note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::ends::Inlet;
@@ -159,7 +160,7 @@ fn the_profile_of_an_open_tube_is_that_between_its_ends() {
         assert_eq!(simulation.length(), 16.0);
         let mut profile = WaveFrameProfile::new(20, 2);
         profile.add(&View::of(&simulation));
-        let bins = profile.late(1.0, 10.0);
+        let bins = profile.late(1.0, 10.0, 1);
         // From 6 on in a wavelength only the first wave is in the tube. Grains: 0.2, 3.1, 8.1 and 13.1 from the inlet, or 6.9
         // and 11.9.
         let found = |from_inlet: f64| bins[(2.0 * from_inlet) as usize].density.0;
@@ -183,7 +184,7 @@ fn a_grain_beyond_an_end_is_in_no_profile() {
     assert!(simulation.is_present(2) && simulation.bodies().position[2].z > 16.0);
     let mut profile = WaveFrameProfile::new(20, 2);
     profile.add(&View::of(&simulation));
-    let bins = profile.late(1.0, 10.0);
+    let bins = profile.late(1.0, 10.0, 1);
     // The three others, each in a bin of two places or of one.
     let densities = bins.iter().map(|bin| bin.density.0).filter(|it| *it > 0.0);
     let densities: Vec<f64> = densities.collect();
@@ -203,7 +204,7 @@ fn the_profile_holds_each_grain_once_and_its_velocity_along_the_wave() {
             simulation.advance(1).unwrap();
             profile.add(&View::of(&simulation));
         }
-        let bins = profile.late(1.0, 10.0);
+        let bins = profile.late(1.0, 10.0, 1);
         let grains: f64 = bins.iter().map(|bin| bin.density.0 * 0.5 * 2.0).sum();
         assert!((grains - 4.0).abs() < 1e-9, "{grains}");
         let momentum: f64 = bins
@@ -218,6 +219,36 @@ fn the_profile_holds_each_grain_once_and_its_velocity_along_the_wave() {
             assert!((bin.radius - radius).abs() < 1e-9, "{bin:?}");
         }
     }
+}
+
+/// Four periods of 20 samples and one sample: the late quarter is the last whole period and that sample.
+#[test]
+fn a_period_that_is_under_way_is_no_late_part_of_its_own() {
+    let mut simulation = free_flight(1.0);
+    let mut profile = WaveFrameProfile::new(1, 20);
+    let mut number = [0.0; 2];
+    for sample in 0..81 {
+        simulation.advance(1).unwrap();
+        profile.add(&View::of(&simulation));
+        if sample == 79 {
+            number[0] = profile.late(0.25, 10.0, 20)[0].density.0;
+        }
+        // One look at the wall a period, in its middle.
+        if sample % 20 == 10 {
+            profile.add_wall_forces(&simulation);
+        }
+    }
+    let bin = &profile.late(0.25, 10.0, 20)[0];
+    number[1] = bin.density.0;
+    assert!(
+        bin.wall_pressure.0.is_finite() && bin.wall_pressure.1.is_nan(),
+        "{bin:?}"
+    );
+    assert_eq!(number, [0.2; 2]);
+    let errors = profile.late(0.5, 10.0, 20)[0].wall_pressure;
+    assert_eq!(errors, (0.0, 0.0), "of the two whole periods");
+    let whole = profile.late_part(0.25, WavePart::Whole, 20);
+    assert!(whole.normal_force.0.is_finite(), "{whole:?}");
 }
 
 #[test]
@@ -285,13 +316,13 @@ fn what_the_wall_does_is_what_the_grains_feel() {
         let mut profile = WaveFrameProfile::new(10, 1);
         profile.add(&View::of(&simulation));
         profile.add_wall_forces(&simulation);
-        let force = profile.late_part(1.0, WavePart::Whole);
+        let force = profile.late_part(1.0, WavePart::Whole, 1);
         assert!(
             (force.normal_force.0 - 0.5 * axial).abs() < 1e-9,
             "{force:?} {axial}"
         );
         assert_eq!(force.tangential_force.0, 0.0);
-        let bins = profile.late(1.0, 10.0);
+        let bins = profile.late(1.0, 10.0, 1);
         // R = 6 everywhere: a bin has the area 2 pi 6 in each of the two waves.
         let pressure: f64 = bins.iter().map(|bin| bin.wall_pressure.0).sum();
         let expected = 0.5 * outward / (core::f64::consts::TAU * 6.0);
@@ -325,13 +356,13 @@ fn the_parts_of_a_wave_have_their_own_forces() {
         profile.add(&View::of(&simulation));
         profile.add_wall_forces(&simulation);
         for part in [WavePart::Narrow, WavePart::Front] {
-            let found = profile.late_part(1.0, part);
+            let found = profile.late_part(1.0, part, 1);
             assert!((found.normal_force.0 - axial(0)).abs() < 1e-9, "{found:?}");
             assert_eq!(found.tangential_force.0, 0.0);
             // A prescribed wall moves in and out only.
             assert_eq!(found.wall_velocity.0, 0.0);
         }
-        let all = profile.late_part(1.0, WavePart::Whole).normal_force.0;
+        let all = profile.late_part(1.0, WavePart::Whole, 1).normal_force.0;
         assert!((all - axial(0) - axial(1)).abs() < 1e-9);
     }
 }
@@ -417,6 +448,37 @@ fn the_shape_of_a_prescribed_tube_is_its_wave() {
     let shape = TubeShape::of(&simulation);
     assert!((shape.narrowest() - 5.5).abs() < 1e-12);
     assert!((shape.radius(2.5) - 6.5).abs() < 1e-12);
+}
+
+/// Every ring has the same weight in the volume, 14 of them in a wave.
+#[test]
+fn the_clear_volume_of_an_elastic_wall_is_that_of_its_rings() {
+    let elastic = ElasticWall::new(ElasticParameters {
+        lattice: LATTICE,
+        mean_radius: 6.0,
+        network: ElasticNetwork::default(),
+        force_amplitude: Schedule::constant(0.0),
+        frequency: Schedule::constant(0.1),
+        heading: 1.0,
+        waveform: Waveform::Sine,
+        angle: DriveAngle::Reference,
+    });
+    let radius = |ring: u32| 5.5 + 0.1 * f64::from(ring % 14);
+    let mut bodies = Bodies::grains_at_rest(Vec::new(), Vec::new());
+    for sphere in 0..elastic.lattice().spheres() {
+        let place = elastic.reference(sphere);
+        // In the middle of its slice.
+        let ring = (place.z / 20.0 * 28.0 + 0.5) as u32;
+        let wider = radius(ring) / 6.0;
+        let along = (f64::from(ring) + 0.5) * 20.0 / 28.0;
+        let moved = DVec3::new(wider * place.x, wider * place.y, along);
+        bodies.push_wall_sphere(moved, 1.0, 0.1);
+    }
+    let simulation = Simulation::new(bodies, Wall::Elastic(elastic), parameters());
+    let areas = (0..14).map(|ring| core::f64::consts::PI * (radius(ring) - 0.5).powi(2));
+    let expected = areas.sum::<f64>() * 20.0 / 14.0;
+    let found = clear_volume(&simulation);
+    assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
 }
 
 #[test]

@@ -30,6 +30,9 @@ use crate::value::settings;
 /// **keywords
 ///     Values of keys by their last word, as of `Simulation.preset`.
 ///
+/// Its items are the dotted keys, each with a value. The tables that hold them (``"drive"``) can be asked for, too, and are
+/// dictionaries.
+///
 /// Raises
 /// ------
 /// ConfigurationError

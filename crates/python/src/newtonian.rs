@@ -296,7 +296,8 @@ impl Newtonian {
         })
     }
 
-    /// Axial and radial velocity and stream function in the laboratory, point by point; `field` of the module broadcasts.
+    /// Axial and radial velocity in the laboratory, and the stream function in the frame of the wave, point by point;
+    /// `field` of the module broadcasts.
     ///
     /// Parameters
     /// ----------

@@ -256,6 +256,11 @@ impl Run {
         Ok(self.look(py, |run| run.driven(parameter)))
     }
 
+    /// Time until the wave has run so many wavelengths more; `None` where it never does.
+    fn time_of_periods(&self, py: Python<'_>, periods: f64) -> Option<f64> {
+        self.look(py, |run| run.time_of_periods(periods))
+    }
+
     /// Computes with so many threads from now on; without a number with as many as pay.
     fn compute_with(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<()> {
         let outcome = self.look(py, |run| match threads {
@@ -355,6 +360,12 @@ impl Run {
     #[getter]
     fn period(&self, py: Python<'_>) -> f64 {
         self.look(py, |run| run.simulation().wall().cycles())
+    }
+
+    /// Length of the tube, of an open one between its ends.
+    #[getter]
+    fn length(&self, py: Python<'_>) -> f64 {
+        self.look(py, |run| run.simulation().length())
     }
 
     /// +1 where the wave runs towards +z, -1 where towards -z.

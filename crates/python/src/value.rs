@@ -30,6 +30,10 @@ fn value_of(value: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
     if value.is_instance_of::<PyString>() {
         return Ok(toml::Value::String(value.extract()?));
     }
+    // Paths are text in a configuration.
+    if value.hasattr("__fspath__")? {
+        return value_of(&value.call_method0("__fspath__")?);
+    }
     if let Ok(table) = value.cast::<PyDict>() {
         let entries = table
             .iter()

@@ -17,7 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import peristalsis
-from peristalsis import ConfigurationError, DoesNotFitError, Simulation, SnapshotError
+from peristalsis import ConfigurationError, DoesNotFitError, Simulation, SnapshotError, Writer
 
 
 def same(one: Simulation, other: Simulation) -> bool:
@@ -236,6 +236,51 @@ def test_callbacks_see_every_so_many_steps_and_cannot_advance(small: Simulation)
     assert seen[1][1] == plain.positions[0, 2]
     plain.step(40)
     assert same(small, plain)
+
+
+def test_periods_are_wavelengths_that_the_wave_runs_under_a_schedule_too(tmp_path: Path) -> None:
+    ramp = {"form": "ramp", "parameter": "strain_rate", "from": 0.0, "to": 0.05, "end": 2}
+    sim = Simulation.preset("frictionless", {"drive.schedule": ramp}, waves=2, seed=2)
+    writer = Writer(tmp_path / "run.gsd", every=0.25, at=[0.6, "1t"])
+    sim.run(periods=1, writers=[writer])
+    # It is half as fast on average, and one wavelength has passed in two nominal periods.
+    assert sim.period == pytest.approx(1, abs=0.002) and sim.time == pytest.approx(40, abs=0.1)
+    assert writer.frames == 1 + 4 + 2
+    sim.run(periods=2)
+    assert sim.time == pytest.approx(80, abs=0.1)
+    pause = {"form": "steps", "parameter": "strain_rate", "at": [1], "values": [0.0]}
+    sim = Simulation.preset("frictionless", {"drive.schedule": pause}, waves=2, seed=2)
+    with pytest.raises(ConfigurationError, match=r"stands still before it has run 1\.5 periods"):
+        sim.run(periods=1.5)
+    assert sim.steps == 0
+
+
+def test_flow_rates_of_an_open_tube_are_over_the_length_between_its_ends() -> None:
+    sim = Simulation.preset("silo", seed=1)
+    sim.step(sim._run.steps_per_sample)
+    series = sim.timeseries()
+    inside = sim.positions[:, 2] if sim.heading > 0 else sim.configuration.length - sim.positions[:, 2]
+    present = (inside >= 0) & (inside <= sim.length) & (np.hypot(*sim.positions[:, :2].T) < 2 * sim.wall_radius().max())
+    flow = sim.heading * sim.velocities[present, 2].sum() / sim.length
+    assert series["flow_rate_instantaneous"][-1] == pytest.approx(flow)
+    assert sim.length == pytest.approx(sim.configuration.length - 4 * sim.diameters.max())
+
+
+def test_a_path_is_text_and_endings_are_of_either_case(tmp_path: Path) -> None:
+    Writer(tmp_path / "RUN.GSD")
+    path = tmp_path / "grains.csv"
+    path.write_text("diameter,fraction\n0.9,0.5\n1.1,0.5\n")
+    sizes = {"grains.sizes": "table", "grains.file": path}
+    assert peristalsis.Configuration("frictionless", sizes) == peristalsis.Configuration("frictionless", {**sizes, "grains.file": str(path)})
+
+
+def test_callbacks_see_samples_in_however_many_pieces_a_simulation_is_run() -> None:
+    sim = Simulation.preset("frictionless", waves=2, seed=1)
+    seen: list[int] = []
+    for _ in range(30):
+        sim.step(3, callback=lambda it: seen.append(it.steps))
+    each = sim._run.steps_per_sample
+    assert seen == list(range(each, 91, each)) and len(seen) == len(sim.timeseries()["time"])
 
 
 def test_what_a_callback_raises_ends_the_run_and_keeps_it(small: Simulation) -> None:

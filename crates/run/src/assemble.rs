@@ -267,7 +267,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
     };
     let heading = configuration.heading();
     let schedule = |parameter, constant| schedule(configuration, parameter, constant);
-    let frequency = schedule(ScheduledParameter::StrainRate, drive.strain_rate);
+    let frequency = frequency(configuration);
     match drive.control {
         Control::Strain { width } => {
             let widths = schedule(ScheduledParameter::Width, width);
@@ -310,6 +310,12 @@ pub fn walls(configuration: &Configuration) -> Wall {
     }
 }
 
+/// c/lambda in time \[1/t\].
+pub(crate) fn frequency(configuration: &Configuration) -> Schedule {
+    let own = configuration.drive.strain_rate;
+    schedule(configuration, ScheduledParameter::StrainRate, own)
+}
+
 /// A drive parameter in time: as scheduled, or constant.
 fn schedule(
     configuration: &Configuration,
@@ -330,10 +336,10 @@ fn schedule(
 /// Wavelengths that the wave runs, where a schedule changes its rate; `None` elsewhere. `run.periods` counts periods of
 /// drive.strain_rate, and then says another number.
 pub fn scheduled_wavelengths(configuration: &Configuration) -> Option<f64> {
-    let rate = ScheduledParameter::StrainRate;
-    configuration.drive.schedule(rate)?;
-    let rate = schedule(configuration, rate, configuration.drive.strain_rate);
-    Some(rate.integral(configuration.run.duration))
+    configuration
+        .drive
+        .schedule(ScheduledParameter::StrainRate)?;
+    Some(frequency(configuration).integral(configuration.run.duration))
 }
 
 /// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without

@@ -22,7 +22,7 @@ pub(crate) const CONTACT: &[Quantity<GrainContact>] = &[
     Quantity::new("x", "d", "where they touch, x", Real(|c| c.point.x)),
     Quantity::new("y", "d", "where they touch, y", Real(|c| c.point.y)),
     Quantity::new("z", "d", "where they touch, z; it may lie a little outside the tube", Real(|c| c.point.z)),
-    Quantity::new("sliding", "", "whether the contact slides", Truth(|c| c.touching.sliding)),
+    Quantity::new("sliding", "", "whether the contact slides, as one without a normal force does", Truth(|c| c.touching.sliding)),
 ];
 
 /// A grain at an instant.

@@ -1,7 +1,7 @@
 //! The measurements of a run so far.
 
 use peristalsis_analysis::{Direction, Transition, TransitionDetector};
-use peristalsis_configuration::{Configuration, InitialState};
+use peristalsis_configuration::Configuration;
 use peristalsis_engine::Simulation;
 use peristalsis_observe::{
     AxialDispersion, ContactForces, Observer, Sample, Series, View, WallFault, WaveByWave,
@@ -60,8 +60,9 @@ impl Recorder {
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let has_grains = configuration.grains.number > 0;
         let period = configuration.drive.period().filter(|_| has_grains);
+        let start = initial_ratio(configuration, simulation);
         let detector_at = |threshold: f64| {
-            let (start, direction) = start_and_direction(configuration.initial.state, threshold);
+            let direction = direction(start, threshold);
             let detector = TransitionDetector::new(direction, threshold, period?);
             let detector =
                 detector.expect("a validated configuration has a finite threshold and period");
@@ -254,18 +255,23 @@ impl Recorder {
     }
 }
 
-/// J/Jmax at the start, and the way from there to a threshold: upward from rest, downward from jammed flow, but downward
-/// to back flow from either, and upward to more than jammed flow.
-fn start_and_direction(state: InitialState, threshold: f64) -> (f64, Direction) {
-    match state {
-        InitialState::Rest | InitialState::Settled | InitialState::Placed if threshold < 0.0 => {
-            (0.0, Direction::Downward)
-        }
-        InitialState::Rest | InitialState::Settled | InitialState::Placed => {
-            (0.0, Direction::Upward)
-        }
-        InitialState::Jammed if threshold > 1.0 => (1.0, Direction::Upward),
-        InitialState::Jammed => (1.0, Direction::Downward),
+/// J/Jmax at the start, <v_z>/c along the wave, with the speed c that [`Configuration::wave_speed`] says: 0 at rest, 1 of
+/// grains that move with the wave; 0 of none.
+fn initial_ratio(configuration: &Configuration, simulation: &Simulation) -> f64 {
+    let speed = configuration.heading() * configuration.wave_speed();
+    let bodies = simulation.bodies();
+    let present = (0..bodies.grains).filter(|&grain| simulation.is_present(grain));
+    let (sum, number) = present.fold((0.0, 0.0), |(sum, number), grain| {
+        (sum + bodies.velocity[grain].z / speed, number + 1.0)
+    });
+    if number > 0.0 { sum / number } else { 0.0 }
+}
+
+/// The way from J/Jmax at the start to a threshold. Whoever starts at it leaves it upward, in jammed flow downward.
+fn direction(start: f64, threshold: f64) -> Direction {
+    match start < threshold || start == threshold && start < 1.0 {
+        true => Direction::Upward,
+        false => Direction::Downward,
     }
 }
 

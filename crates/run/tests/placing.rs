@@ -7,16 +7,20 @@ use glam::DVec3;
 use peristalsis_configuration::ScheduledParameter;
 use peristalsis_observe::{Load, clear_volume, grain_contacts};
 use peristalsis_physics::contact::NormalLaw;
-use peristalsis_run::{PlacedGrains, Run, contacts_table, warnings};
+use peristalsis_run::{PlacedGrains, Run, Status, Summary, contacts_table, warnings};
 
 const TUBE: &str = "tube.waves=2 initial.state=placed";
 
 fn placed(settings: &str, positions: &[DVec3]) -> Result<Run, String> {
+    moving(settings, positions, &vec![DVec3::ZERO; positions.len()])
+}
+
+fn moving(settings: &str, positions: &[DVec3], velocities: &[DVec3]) -> Result<Run, String> {
     let number = positions.len();
     let words = format!("{TUBE} grains.number={number} {settings}");
     let grains = PlacedGrains {
         positions: positions.to_vec(),
-        velocities: vec![DVec3::ZERO; number],
+        velocities: velocities.to_vec(),
         diameters: vec![1.0; number],
     };
     Run::placed(configuration("frictionless", &words), grains).map_err(|error| error.to_string())
@@ -90,6 +94,56 @@ fn placed_grains_go_on_from_a_checkpoint_with_the_same_bits() {
     }
     assert_eq!(run.simulation().bodies(), again.simulation().bodies());
     assert!(run.configuration().to_toml().contains("state = \"placed\""));
+}
+
+/// Grains taken from jammed flow are jammed at t = 0, and those that coast as fast as they coast.
+#[test]
+fn the_search_for_a_transition_begins_with_the_velocities_of_the_grains() {
+    let settings = "tube.waves=2 run.periods=5";
+    let jammed = format!("{settings} initial.state=jammed");
+    let mut jammed = Run::new(configuration("frictionless", &jammed)).unwrap();
+    let bodies = jammed.simulation().bodies();
+    let grains = 0..bodies.grains;
+    let (positions, velocities) = (&bodies.position[grains.clone()], &bodies.velocity[grains]);
+    let mut again = moving("run.periods=5", positions, velocities).unwrap();
+    let coasting = format!("{settings} drive.width=3 initial.axial_velocity=0.3");
+    let mut coasting = Run::new(configuration("frictionless", &coasting)).unwrap();
+    for run in [&mut jammed, &mut again, &mut coasting] {
+        while !run.is_complete() {
+            run.advance().unwrap();
+        }
+    }
+    let averages = |run: &Run| run.recorder().averages().to_vec();
+    assert_eq!(averages(&jammed), averages(&again));
+    let times = jammed.recorder().transition_times();
+    assert_eq!(times, again.recorder().transition_times());
+    // They begin at 0.3/c = 0.6, and slow down to 0.56: no threshold is crossed that lies below.
+    let ratios = averages(&coasting);
+    assert!(ratios[0] < 0.6 && ratios[4] > 0.5, "{ratios:?}");
+    assert_eq!(coasting.recorder().transition_times()[..5], [None; 5]);
+}
+
+/// One grain rests; one is shot through the wall, and past the outlet outside of it.
+#[test]
+fn what_has_leaked_closes_the_balance_of_an_open_tube() {
+    let places = [DVec3::new(0.0, 0.0, 4.0), DVec3::new(1.0, 0.0, 12.0)];
+    let shot = DVec3::new(4.0, 0.0, 2.0);
+    let open = "tube.ends=open inlet.feed_rate=0 run.periods=1";
+    let mut run = moving(open, &places, &[DVec3::ZERO, shot]).unwrap();
+    while !run.is_complete() {
+        run.advance().unwrap();
+    }
+    let (samples, mut before) = (run.recorder().samples(), 0.0);
+    let through_ends = samples.iter().map(|it| {
+        let interval = it.time - core::mem::replace(&mut before, it.time);
+        interval * (it.feed_rate - it.return_rate - it.discharge_rate)
+    });
+    let through_ends: f64 = through_ends.sum();
+    let summary = Summary::of(&run, Status::Complete, None);
+    let leaked = summary.discharge.unwrap().leaked;
+    assert_eq!(leaked, 1.0);
+    assert_eq!(samples.last().unwrap().hold_up, 2.0 + through_ends - leaked);
+    assert!(summary.to_json().contains("\"leaked\": 1.0"));
 }
 
 /// PYTHON, medium 7.

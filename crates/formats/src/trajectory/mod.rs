@@ -184,9 +184,9 @@ impl TrajectoryFormat {
         }
     }
 
-    /// The format of files whose names end with `ending`.
+    /// The format of files whose names end with `ending`, in letters of either case.
     pub fn by_ending(ending: &str) -> Option<Self> {
-        match ending {
+        match ending.to_ascii_lowercase().as_str() {
             "gsd" => Some(Self::Gsd),
             "vtp" => Some(Self::Vtp),
             "lammpstrj" | "lammpsdump" | "dump" => Some(Self::Lammps),

@@ -29,12 +29,11 @@ pub struct PartOfWave {
 }
 
 impl WaveFrameProfile {
-    /// A part of the wave over the last part of what was added, at least one block.
+    /// A part of the wave over the last part of what was added, as [`WaveFrameProfile::late`] with its errors.
     ///
-    /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one. A straight tube has
-    /// no proper parts: all is NaN.
-    pub fn late_part(&self, fraction: f64, part: WavePart) -> PartOfWave {
-        let groups = self.late_groups(fraction);
+    /// A straight tube has no proper parts: all is NaN.
+    pub fn late_part(&self, fraction: f64, part: WavePart, period: u64) -> PartOfWave {
+        let (groups, whole) = self.late_groups(fraction, period);
         let radius = |bin: usize| {
             let all = total(groups.iter().map(|group| &group[bin]));
             all.radius / all.looks
@@ -45,8 +44,10 @@ impl WaveFrameProfile {
             .map(|group| total(bins.iter().map(|&bin| &group[bin])))
             .collect();
         let all = total(&inside);
-        let with_error =
-            |value: &dyn Fn(&Sums) -> f64| (value(&all), standard_error(inside.iter().map(value)));
+        let with_error = |value: &dyn Fn(&Sums) -> f64| {
+            let error = standard_error(inside[..whole].iter().map(value));
+            (value(&all), error)
+        };
         // Every bin was looked at as often.
         let looks = |sums: &Sums| sums.wall.looks / bins.len() as f64;
         PartOfWave {

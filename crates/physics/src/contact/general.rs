@@ -107,6 +107,10 @@ impl TangentialLaw for General {
         self.rolling.map(couple).unwrap_or_default()
     }
 
+    fn slid(&self, history: &GeneralHistory) -> bool {
+        self.friction.is_some() && history.friction.sliding
+    }
+
     fn bond(&self, history: &GeneralHistory) -> f64 {
         history.bond
     }

@@ -260,6 +260,11 @@ pub trait TangentialLaw: Copy + Sync {
         RollingCouple::default()
     }
 
+    /// Whether friction slid at the end of the last step; `false` where the contact had no normal force.
+    fn slid(&self, _history: &Self::History<f64>) -> bool {
+        false
+    }
+
     /// Energy of cohesion that is lost when the contact ends.
     #[inline(always)]
     fn bond(&self, _history: &Self::History<f64>) -> f64 {

@@ -147,6 +147,10 @@ impl TangentialLaw for CundallStrack {
     fn stored_energy<R: Real>(&self, history: &TangentialHistory<R>) -> R {
         R::splat(0.5 * self.tangential_stiffness) * history.displacement.dot(history.displacement)
     }
+
+    fn slid(&self, history: &TangentialHistory) -> bool {
+        history.sliding
+    }
 }
 
 impl CundallStrack {

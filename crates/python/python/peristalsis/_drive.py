@@ -86,8 +86,9 @@ class Drive(State):
 
     @property
     def strain_rate(self) -> float:
-        """c/lambda [1/t]. Samples keep their distance in time when it changes, and `configuration` counts its periods
-        (``run.periods``, ``drive.schedule``) in those of the first rate; `period` counts wavelengths.
+        """c/lambda [1/t], under a schedule that of the middle of the next step. Samples keep their distance in time when it
+        changes, and `configuration` counts its periods (``run.periods``, ``drive.schedule``) in those of the first rate;
+        `period` counts wavelengths.
 
         Examples
         --------

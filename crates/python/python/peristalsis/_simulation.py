@@ -75,7 +75,7 @@ class Simulation(Made):
         writers: Iterable[Writer] = (),
         threads: int | None = None,
     ) -> None:
-        """Advance by so many periods of the wave; without a length, to the end that the configuration names.
+        """Advance until the wave has run so many wavelengths; without a length, to the end that the configuration names.
 
         The interpreter is free meanwhile: other threads go on, and Ctrl-C stops between two steps, with everything that
         was computed kept; `run` goes on from there with the same bits.
@@ -83,15 +83,16 @@ class Simulation(Made):
         Parameters
         ----------
         periods : float, optional
-            Periods of the wave as it is driven now, T = 1/strain_rate.
+            Wavelengths that the wave is to run, as `period` counts them, also where a schedule changes its speed: each takes
+            T = 1/strain_rate where that is constant.
         duration : float, optional
             Time [t] instead of periods.
         progress : bool or "logging"
             Show how far it is: by tqdm where that is installed, otherwise on standard error; or tell the logger
             ``peristalsis`` every ten seconds.
         callback : callable, or iterable of callables and (callable, every) pairs, optional
-            Called with this simulation every `every` steps, in this order. It may read everything and change the drive;
-            it cannot advance. What it raises ends the run.
+            Called with this simulation where the steps since its start are a multiple of `every`, in this order. It may
+            read everything and change the drive; it cannot advance. What it raises ends the run.
         every : int, optional
             Steps from one call to the next; by default those from sample to sample.
         writers : iterable of Writer, optional
@@ -106,7 +107,8 @@ class Simulation(Made):
             Where a grain moves too far in one step; the state is the state after that step, and the simulation goes no
             further.
         ConfigurationError
-            For a length shorter than half a step, or of more steps than any run can have.
+            For a length shorter than half a step, or of more steps than any run can have; for periods that the wave, as it
+            is scheduled, never runs.
         ValueError
             For a length that is not above 0.
 
@@ -127,9 +129,9 @@ class Simulation(Made):
         if periods is not None and duration is not None:
             raise TypeError("run takes periods or duration, not both")
         if periods is not None:
-            if not self.strain_rate:
-                raise ConfigurationError("a static wave has no period: give run a duration")
-            duration = positive("periods", periods) / self.strain_rate
+            duration = self._run.time_of_periods(positive("periods", periods))
+            if duration is None:
+                raise ConfigurationError(f"the wave stands still before it has run {periods:g} periods: give run a duration")
         if duration is None:
             if self.steps >= configuration.steps:
                 told = "the run is complete, and nothing was done: give run periods or duration to go on"

@@ -62,7 +62,7 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     all_waves = simulation.configuration.waves
     if waves < 1 or not 0 <= first < all_waves:
         raise ValueError(f"a snapshot shows 1 or more waves, from one of 0 to {all_waves - 1} on")
-    length, heading = simulation.length, simulation.heading
+    length, heading = simulation.configuration.length, simulation.heading
     wavelength = length / all_waves
     begin, end = first * wavelength, min(first + waves, all_waves) * wavelength
 

@@ -165,7 +165,7 @@ class State:
 
     @property
     def length(self) -> float:
-        """L [d], length of the tube.
+        """L [d], length of the tube over which J is taken: waves times lambda, of an open tube less, between its ends.
 
         Examples
         --------
@@ -174,7 +174,7 @@ class State:
         >>> sim.length
         20.0
         """
-        return self._run.configuration.length
+        return self._run.length
 
     @property
     def heading(self) -> float:
@@ -305,8 +305,13 @@ class State:
 
         l is the branch vector, from the partner's centre to the grain's or, of a contact with the wall, from where they
         touch to the grain's centre; f is the force on the grain, dv its velocity less the mean of all grains, and V the
-        `volume` that the wall leaves clear. Grains that wait outside an open tube do not count. A third of the trace is the pressure. In a straight tube at rest
-        (sigma[0, 0] + sigma[1, 1])/2 is the pressure on the wall.
+        `volume` that the wall leaves clear. Grains that wait outside an open tube do not count. A third of the trace is the
+        pressure. In a straight tube at rest (sigma[0, 0] + sigma[1, 1])/2 is the pressure on the area 2 pi (R - d_w/2) L of
+        the clear bore. ``wall_pressure`` of `profile` and `summary` is that on the area 2 pi R L through the centres of the
+        wall's spheres, smaller by the factor 1 - d_w/(2 R).
+
+        dv is less the mean over the masses of all grains; ``granular_temperature`` of `timeseries` is about the mean of their
+        velocities, which differs where sizes differ.
 
         Examples
         --------
@@ -340,7 +345,7 @@ class State:
         ----------
         z : array_like, optional
             Places along the tube [d], taken round it where they lie beyond its ends; by default 64 a wave, evenly from 0:
-            ``np.arange(64 * waves) * length / (64 * waves)``.
+            ``np.arange(64 * waves) * wavelength / 64``.
 
         Returns
         -------
@@ -357,7 +362,7 @@ class State:
         """
         if z is None:
             number = _PLACES * self._run.configuration.waves
-            z = np.arange(number) * (self.length / number)
+            z = np.arange(number) * (self._run.configuration.length / number)
         places = numbers("z", z)
         if not np.isfinite(places).all():
             raise ValueError("z is a place along the tube: a finite number")
@@ -466,7 +471,8 @@ class State:
         return self._run.waves()
 
     def summary(self) -> Summary:
-        """The outcome so far, as ``summary.json`` of the command line has it; a number that is not known yet is NaN (there: null).
+        """The outcome so far, as ``summary.json`` of the command line has it. Where that has null a number is NaN if it is not
+        known yet, and `None` if there is none in this run, or none so far: no transition, no friction, an open tube.
 
         Returns
         -------

@@ -26,7 +26,8 @@ class Trigger:
     def __init__(self, act: Callable[[Simulation], object], now: int, every: int) -> None:
         self.act: Callable[[Simulation], object] = act
         self.every: int = every
-        self._due: int | None = now + every
+        # At the multiples of `every`, and so at samples: in however many pieces a simulation is run.
+        self._due: int | None = now + every - now % every
 
     def _fire(self, simulation: Simulation) -> None:
         """Does it, and waits for the next step."""
@@ -70,10 +71,12 @@ class Writer:
         PyVista; ``.parquet``, a folder with a table of the grains for each frame, which pandas, polars and DuckDB read as
         one.
     every : float or str, optional
-        Time from one frame to the next, the first at once: in periods 1/strain_rate of the wave as it is driven when
-        writing begins, or as text in time, ``"2.5t"``. A tenth of a period unless `every` or `at` is given.
+        From one frame to the next, the first at once: in wavelengths that the wave runs, also where a schedule changes its
+        speed, or as text in time, ``"2.5t"``. A tenth of a wavelength unless `every` or `at` is given. While the wave
+        stands still for good no frame follows.
     at : float, str, or sequence of them, optional
-        Instants of single frames, counted from the start of the simulation, in the same units.
+        Instants of single frames, counted from the start of the simulation, in the same units, as the drive is scheduled
+        when writing begins.
     overwrite : bool
         Whether an older file of that name may be lost; otherwise it is an error.
 
@@ -121,7 +124,7 @@ class Writer:
         self._overwrite = overwrite
         self._simulation: Simulation | None = None
         self._frames: _core.Frames | None = None
-        self._first = self._interval = 0
+        self._next: int | None = None
         self._instants: list[int] = []
 
     @property
@@ -142,37 +145,47 @@ class Writer:
         if self._simulation is None:
             return None
         now = self._simulation.steps
-        coming = [step for step in self._instants if step > now]
-        if self._interval:
-            coming.append(now + self._interval - (now - self._first) % self._interval)
-        return min(coming, default=None)
+        return min((step for step in [*self._instants, self._next] if step is not None and step > now), default=None)
 
     def _begin(self, simulation: Simulation) -> None:
         """Make ready for a simulation that is about to run; writes the present state where it is one of the frames."""
         if self._simulation is simulation:
+            # It may have run without this writer, or have been set in motion again.
+            if self._next is None or self._next <= simulation.steps:
+                self._next = self._following(simulation)
             return
         if self._simulation is not None:
             raise ValueError(f"{self.path} holds frames of another simulation already")
         now = simulation.steps
-        interval = 0 if self._every is None else steps_in(simulation, "every", self._every)
-        instants = sorted(steps_in(simulation, "at", instant) for instant in self._at)
-        if self._every is not None and interval < 1:
+        interval = None if self._every is None else steps_to(simulation, "every", self._every)
+        instants = [now + steps_to(simulation, "at", instant, since_start=True) for instant in self._at]
+        if interval is not None and interval < 1:
             raise ValueError(f"every = {self._every!r} is shorter than a step of {simulation.configuration.time_step:.4g} t")
-        over = [instant for instant in instants if instant < now]
+        over = [at for at, instant in zip(self._at, instants) if instant < now]
         if over:
-            raise ValueError(f"at: step {over[0]} is over, and the simulation stands at step {now}")
+            raise ValueError(f"at = {over[0]!r} is over: the simulation stands at step {now}")
         if self.path.exists() and not self._overwrite:
             raise FileExistsError(f"{self.path} is there already: take another name, or overwrite=True")
         self._frames = _core.Frames(simulation._run, self.path)
         self._simulation = simulation
-        self._first, self._interval, self._instants = now, interval, instants
+        self._instants = instants
         if interval or now in instants:
+            self._next = now
             self._fire(simulation)
 
     def _fire(self, simulation: Simulation) -> None:
         """Write the present state as a frame."""
         if self._frames is not None:
             self._frames.append(simulation._run)
+        if self._next == simulation.steps:
+            self._next = self._following(simulation)
+
+    def _following(self, simulation: Simulation) -> int | None:
+        """Step of the frame after one that is due now; `None` where the wave never gets so far."""
+        try:
+            return None if self._every is None else simulation.steps + max(1, steps_to(simulation, "every", self._every))
+        except ValueError:
+            return None
 
     def _synchronize(self) -> None:
         """Bring all frames to the disk."""
@@ -195,11 +208,18 @@ def span(name: str, given: float | str) -> tuple[float, bool]:
     return number, is_time
 
 
-def steps_in(simulation: Simulation, name: str, given: float | str) -> int:
-    """The steps of a span of time: periods of the wave as it is driven now, or as text with a ``t`` in time."""
+def steps_to(simulation: Simulation, name: str, given: float | str, *, since_start: bool = False) -> int:
+    """The steps from now to the end of a span: of wavelengths that the wave runs, or as text with a ``t`` of time. Below 0
+    where it is over."""
     number, is_time = span(name, given)
-    if not is_time:
-        if not simulation.strain_rate:
-            raise ValueError(f'{name} = {given!r}: a static wave has no period; give a time, such as "2.5t"')
-        number /= simulation.strain_rate
-    return round(number / simulation.configuration.time_step)
+    if is_time:
+        steps = round(number / simulation.configuration.time_step)
+        return steps - simulation.steps if since_start else steps
+    # Up to rounding it may be now.
+    ahead = round(number - simulation.period, 9) if since_start else number
+    if ahead < 0:
+        return -1
+    time = simulation._run.time_of_periods(ahead)
+    if time is None:
+        raise ValueError(f'{name} = {given!r}: the wave stands still before it has run so far; give a time, such as "2.5t"')
+    return round(time / simulation.configuration.time_step)

@@ -59,7 +59,7 @@ def flow_rate_ratio(
 def field(
     flow: Newtonian, radius: npt.ArrayLike, position: npt.ArrayLike
 ) -> tuple[Array, Array, Array]:
-    """Axial velocity, radial velocity and stream function in the laboratory.
+    """Axial and radial velocity in the laboratory, and the stream function in the frame of the wave.
 
     Parameters
     ----------
@@ -71,7 +71,8 @@ def field(
     Returns
     -------
     tuple of ndarray
-        Axial velocity [c], radial velocity [c a/lambda] and stream function [c a^2], of the common shape.
+        Axial velocity [c], radial velocity [c a/lambda] and Stokes' stream function psi [c a^2], of the
+        common shape. In the frame of the wave the flow is steady and follows lines of constant psi: d psi/dr = r (v_z - c).
 
     Examples
     --------

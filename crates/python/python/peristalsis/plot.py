@@ -226,7 +226,7 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
         raise ValueError(f"there is no {column} to draw: run the simulation first, for a period at least")
     unit = table.units[column]
     words, symbol, colour = _COLUMNS.get(column, (column.replace("_", " "), "", BLUE))
-    speed = simulation.strain_rate * simulation.length / simulation.configuration.waves
+    speed = simulation.strain_rate * simulation.configuration["tube.wavelength"]
     scale, unit = (1.0 / speed, "c") if unit == "d/t" and speed else (1.0, unit)
     place = np.concatenate([table["position"][-1:] - 1.0, table["position"], table["position"][:1] + 1.0])
 

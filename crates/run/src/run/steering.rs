@@ -1,9 +1,10 @@
 //! Driving a run while it goes on.
 
 use peristalsis_configuration::{Configuration, Schedule, ScheduledParameter};
+use peristalsis_physics::wall::Schedule as Course;
 
 use super::Run;
-use crate::assemble::walls;
+use crate::assemble::{frequency, walls};
 use crate::error::RunError;
 
 /// Largest force amplitude and strain rate, as for the keys of the drive.
@@ -18,6 +19,29 @@ fn key(parameter: ScheduledParameter) -> &'static str {
     }
 }
 
+/// Time from `now` on in which the integral of `frequency` grows by `cycles`; `None` where it never does.
+fn time_of_cycles(frequency: &Course, now: f64, cycles: f64) -> Option<f64> {
+    let last = frequency.knots().last().map_or(now, |knot| knot.0.max(now));
+    let grown = |time: f64| frequency.integral(time) - frequency.integral(now);
+    if grown(last) < cycles {
+        // At rest the product is the same to the bit whatever was before.
+        let time = (last - now) + (cycles - grown(last)) / frequency.value(last);
+        return time.is_finite().then_some(time);
+    }
+    let (mut least, mut most) = (now, last);
+    // Until no number lies between.
+    while let middle = 0.5 * (least + most)
+        && least < middle
+        && middle < most
+    {
+        match grown(middle) < cycles {
+            true => least = middle,
+            false => most = middle,
+        }
+    }
+    Some(most - now)
+}
+
 impl Run {
     /// The value of a parameter of the drive for the next step, in the units of its key; `None` for the amplitude of the other
     /// control.
@@ -25,6 +49,16 @@ impl Run {
         let own = self.configuration.drive.own(parameter)?;
         let schedule = self.schedule(parameter);
         Some(schedule.map_or(own, |schedule| schedule.value(self.soonest())))
+    }
+
+    /// Time until the wave has run so many wavelengths more, under the drive as it is scheduled \[t\]; `None` where it never
+    /// does.
+    pub fn time_of_periods(&self, periods: f64) -> Option<f64> {
+        time_of_cycles(
+            &frequency(&self.configuration),
+            self.simulation.time(),
+            periods,
+        )
     }
 
     /// Whether a parameter of the drive stays what it is.
@@ -165,5 +199,27 @@ impl Run {
         let run = &self.configuration.run;
         let period = self.configuration.drive.period().unwrap_or(1.0);
         (self.simulation.step() as f64 + 0.5) * run.time_step / period
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn periods_last_until_the_wave_has_run_them() {
+        let constant = Course::constant(0.05);
+        assert_eq!(time_of_cycles(&constant, 7.0, 3.0), Some(3.0 / 0.05));
+        // From 0 to 0.05 within 40, one wavelength in all, and 0.05 from then on.
+        let ramp = Course::through(vec![(0.0, 0.0), (40.0, 0.05)]).unwrap();
+        let of = |now: f64, cycles: f64| time_of_cycles(&ramp, now, cycles).unwrap();
+        assert!((of(0.0, 0.25) - 20.0).abs() < 1e-9);
+        assert!((of(20.0, 1.75) - 40.0).abs() < 1e-9);
+        // A pause, after which the wave goes on; and one without an end.
+        let pause = [(10.0, 0.1), (10.0, 0.0), (30.0, 0.0), (30.0, 0.2)];
+        let [through, for_ever] = [4, 3].map(|knots| Course::through(pause[..knots].to_vec()));
+        assert!((time_of_cycles(&through.unwrap(), 0.0, 2.0).unwrap() - 35.0).abs() < 1e-9);
+        assert_eq!(time_of_cycles(&for_ever.unwrap(), 0.0, 1.5), None);
     }
 }

@@ -21,10 +21,10 @@ pub struct MixedGrains {
 }
 
 impl MixedGrains {
-    /// From all samples of a run and its late samples; a period has `each` samples. `None` where there is no index.
-    pub(super) fn of(samples: &[Sample], late: &[Sample], each: usize) -> Option<Self> {
+    /// From all samples of a run and the [ends of its late periods](ends_of_periods). `None` where there is no index.
+    pub(super) fn of(samples: &[Sample], ends: &[Sample]) -> Option<Self> {
         let measured =
-            |of: fn(&Mixing) -> f64| measured(late, each, |sample| sample.mixing.as_ref().map(of));
+            |of: fn(&Mixing) -> f64| measured(ends, |sample| sample.mixing.as_ref().map(of));
         let time = |of: fn(&Mixing) -> f64| {
             let mixed = samples
                 .iter()
@@ -52,11 +52,10 @@ pub struct SegregatedSizes {
 }
 
 impl SegregatedSizes {
-    /// From the late samples of a run; a period has `each` samples.
-    pub(super) fn of(late: &[Sample], each: usize) -> Self {
-        let measured = |of: fn(&Segregation) -> Option<f64>| {
-            measured(late, each, |sample| of(&sample.segregation))
-        };
+    /// From the [ends of the late periods](ends_of_periods) of a run.
+    pub(super) fn of(ends: &[Sample]) -> Self {
+        let measured =
+            |of: fn(&Segregation) -> Option<f64>| measured(ends, |sample| of(&sample.segregation));
         Self {
             radial: measured(|it| it.radial),
             height: measured(|it| it.height),
@@ -65,15 +64,26 @@ impl SegregatedSizes {
     }
 }
 
-/// Mean and error of a number that is measured once per period and repeated by all `each` samples of the period; `None`
-/// where one of the numbers is missing.
-fn measured(
-    late: &[Sample],
-    each: usize,
-    value: impl Fn(&Sample) -> Option<f64>,
-) -> Option<(f64, f64)> {
-    let periods = late.iter().rev().step_by(each);
-    let values: Option<Vec<f64>> = periods.map(value).collect();
+/// The late samples that end a period of `each` samples, the last one first, or the last sample where none does: what is
+/// measured at the end of a period is repeated by all samples up to the next.
+pub(super) fn ends_of_periods(samples: &[Sample], late: &[Sample], each: usize) -> Vec<Sample> {
+    let since = samples.len() % each;
+    let ends: Vec<Sample> = late
+        .iter()
+        .rev()
+        .skip(since)
+        .step_by(each)
+        .copied()
+        .collect();
+    match ends.is_empty() {
+        true => late.last().copied().into_iter().collect(),
+        false => ends,
+    }
+}
+
+/// Mean and error of a number that is measured at the end of each period; `None` where one of the numbers is missing.
+fn measured(ends: &[Sample], value: impl Fn(&Sample) -> Option<f64>) -> Option<(f64, f64)> {
+    let values: Option<Vec<f64>> = ends.iter().map(value).collect();
     let values = values.filter(|it| !it.is_empty())?;
     Some((super::mean(&values), error_of(values.into_iter())))
 }
@@ -93,15 +103,22 @@ mod tests {
             ..Sample::default()
         };
         let samples: Vec<Sample> = (0..40).map(sample).collect();
-        let found = MixedGrains::of(&samples, &samples[20..], 1).unwrap();
+        let of = |late: &[Sample], each| {
+            MixedGrains::of(&samples, &ends_of_periods(&samples, late, each)).unwrap()
+        };
+        let found = of(&samples[20..], 1);
         assert_eq!((found.axial_time, found.radial_time), (Some(5.0), None));
         assert!((found.axial.0 - 2.95).abs() < 1e-12 && (found.radial.0 - 0.295).abs() < 1e-12);
         // Of two samples a period the last ones: steps 21, 23, ... 39.
-        let found = MixedGrains::of(&samples, &samples[20..], 2).unwrap();
+        let found = of(&samples[20..], 2);
         assert!((found.axial.0 - 3.0).abs() < 1e-12);
+        // Of nine a period the last whole ones, which end at steps 26 and 35; what the next ones repeat is not theirs.
+        let found = of(&samples[20..], 9);
+        assert!((found.axial.0 - 3.05).abs() < 1e-12);
+        assert!((of(&samples[37..], 9).axial.0 - 3.9).abs() < 1e-12);
         // An open tube has no index, grains of one size no segregation.
         let open = [Sample::default(); 3];
-        assert_eq!(MixedGrains::of(&open, &open, 1), None);
-        assert_eq!(SegregatedSizes::of(&open, 1).height, None);
+        assert_eq!(MixedGrains::of(&open, &open), None);
+        assert_eq!(SegregatedSizes::of(&open).height, None);
     }
 }

@@ -19,6 +19,8 @@ pub struct Discharge {
     pub hold_up: (f64, f64),
     /// Mass that has left through the outlet since the start.
     pub discharged: f64,
+    /// Mass that has left beside the tube since the start: of grains that had gone through its wall.
+    pub leaked: f64,
     /// Grains that have gone from the inlet to the outlet in the whole run.
     pub passed: u64,
     /// Mean transit time of these grains, and its error; NaN of too few.
@@ -50,6 +52,7 @@ impl Discharge {
             return_rate: measured(|sample| sample.return_rate),
             hold_up: measured(|sample| sample.hold_up),
             discharged: late.last().map_or(0.0, |sample| sample.discharged),
+            leaked: ends.passages().leaked.mass,
             passed,
             transit_time: (times.mean(), (variance / passed as f64).sqrt()),
             transit_time_variance: variance,

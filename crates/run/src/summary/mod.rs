@@ -136,6 +136,7 @@ impl Summary {
         let late_intervals = late.len() as u64 * recorder.intervals();
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let of_period = (samples_per_period / recorder.intervals()).max(1) as usize;
+        let ends = arrangement::ends_of_periods(samples, late, of_period);
         let length = simulation.length();
         let in_waves = length / configuration.tube.wavelength;
         let changes_speed = configuration
@@ -144,7 +145,10 @@ impl Summary {
             .is_some();
         let [ratios, raw_ratios] = late::flow_rate_ratios(samples, late, in_waves, changes_speed);
         let profile = late_profile(run);
-        let part = |part| recorder.profile().late_part(fraction, part);
+        let part = |part| {
+            let profile = recorder.profile();
+            profile.late_part(fraction, part, samples_per_period)
+        };
         let whole = part(WavePart::Whole);
         let pressures = profile.iter().map(|bin| bin.wall_pressure.0);
         // Beyond an end there is no wall that they could press on.
@@ -170,8 +174,8 @@ impl Summary {
             wall_pressure_largest: pressures.into_iter().fold(f64::NAN, f64::max),
             wear: Wear::of(configuration, length, &whole, &profile),
             wall_torque: wall_torque(samples, late),
-            mixed: MixedGrains::of(samples, late, of_period),
-            segregated: SegregatedSizes::of(late, of_period),
+            mixed: MixedGrains::of(samples, &ends),
+            segregated: SegregatedSizes::of(&ends),
             steps: simulation.step(),
             time: simulation.time(),
             periods: simulation.wall().cycles(),

@@ -28,7 +28,7 @@ impl FrameFormat {
     /// [`RunError::Trajectory`] where none is known by it.
     pub fn of(path: &Path) -> Result<Self, RunError> {
         match path.extension().and_then(|ending| ending.to_str()) {
-            Some("parquet") => Ok(Self::Parquet),
+            Some(ending) if ending.eq_ignore_ascii_case("parquet") => Ok(Self::Parquet),
             ending => ending
                 .and_then(TrajectoryFormat::by_ending)
                 .map(Self::Trajectory)

@@ -1,5 +1,6 @@
 //! Warnings: settings that can be computed but look doubtful.
 
+mod damping;
 mod holding;
 mod leaking;
 mod sampling;
@@ -62,6 +63,7 @@ fn of_constants(configuration: &Configuration) -> Vec<Warning> {
         let key = "run.time_step";
         warnings.push(Warning { key, message });
     }
+    warnings.extend(damping::warnings(configuration));
     warnings.extend(few_steps_a_period(configuration));
     if let Some(units) = &configuration.units {
         warnings.extend(softness::warning(configuration, units));

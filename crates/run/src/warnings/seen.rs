@@ -34,6 +34,7 @@ pub(super) fn warnings(run: &Run) -> Vec<Warning> {
         warnings.push(overlapped(configuration, overlap, limit));
     }
     warnings.extend(left(run, packed > limit));
+    warnings.extend(unaccounted(run));
     warnings.extend(threshold::missed(run));
     warnings.extend(ran_dry(run));
     warnings
@@ -80,6 +81,22 @@ fn of_whom(configuration: &Configuration) -> &'static str {
         true => "the largest diameter",
         false => "a diameter",
     }
+}
+
+/// Part of the energy that entered which the ledger may miss.
+const LARGEST_RESIDUAL: f64 = 0.05;
+
+/// That energy came or went which no force accounts for; of less than a period nothing is said.
+fn unaccounted(run: &Run) -> Option<Warning> {
+    let residual = run.simulation().energy_residual();
+    let message = format!(
+        "energy is not accounted for: {:.0} % of what entered appeared or vanished of itself, so forces change too much in a \
+         step; take a shorter run.time_step until energy_residual is small",
+        100.0 * residual
+    );
+    let key = "run.time_step";
+    let is_told = run.recorder().periods() > 0 && residual > LARGEST_RESIDUAL;
+    is_told.then_some(Warning { key, message })
 }
 
 /// Part of the looks at the inlet at which none waited, above which the inlet counts as dry.
