@@ -24,7 +24,7 @@ export type Welcome = {
   /** Duration of a period at the strain rate of the drive, the unit of every clock; null where the wave stands, and clocks tell t. */
   unit_period: number | null,
   ranges: Sliders<[number, number]>,
-  /** J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed. */
+  /** J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed, and where the wave is no sine that moves. */
   newtonian: Array<[number, number]>,
   driven: Sliders<number>,
   /** The whole time series of a run that was computed before: (time in periods, J/Jmax). */

@@ -504,7 +504,7 @@ class ThroatSummary(TypedDict):
     axial_velocity: float
     """mean axial velocity along the wave there [d/t]"""
     granular_temperature: float
-    """granular temperature there [m d^2/t^2]"""
+    """granular temperature there, about the velocity of the centre of mass [m d^2/t^2]"""
 
 
 class BellySummary(TypedDict):
@@ -535,6 +535,9 @@ class OpenSummary(TypedDict):
     """its standard error [m]"""
     discharged: float | None
     """mass that has left an open tube through its outlet since the start [m]"""
+    leaked: float | None
+    """mass of the grains that have gone through the wall of an open tube, and past one of its ends, since the start
+    [m]"""
     transit_time: float | None
     """mean time from the inlet to the outlet of the grains that have gone all the way in the run [t]"""
     transit_time_error: float | None
@@ -649,7 +652,7 @@ class Summary(_Rare):
     energy_residual: float
     """|what the energy ledger misses|/(integral of |power of wall and drive| + |work of the body force|)"""
     granular_temperature: float
-    """late mean of the granular temperature, escaped grains too [m d^2/t^2]"""
+    """late mean of the granular temperature about the mean of the velocities, escaped grains too [m d^2/t^2]"""
     contacts: float
     """late mean number of contacts of a grain, escaped ones too"""
     wall_power: float
@@ -699,8 +702,8 @@ class Summary(_Rare):
     front_tangential_force_error: float
     """its standard error [m d/t^2]"""
     wall_pressure: float
-    """late mean pressure on the wall (of an open tube between its ends), each bin of the profile alike [m/(d
-    t^2)]"""
+    """late mean pressure on the wall (of an open tube between its ends), on the area through the centres of its
+    spheres, each bin of the profile alike [m/(d t^2)]"""
     wall_pressure_largest: float
     """largest late mean pressure on the wall over the positions in the wave frame [m/(d t^2)]"""
     contact_force_99: float | None
