@@ -163,7 +163,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.quantity("critical width", values!(varied, value, speed), width);
     }
     let panels = found.iter().map(|(varied, of)| against(varied, of));
-    let chart = grid(2, panels);
+    let chart = grid(2, panels).legend(LegendPlace::Below);
     draft.chart("softness-or-geometry", &[], chart)?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q3_NEEDED))
 }
@@ -181,11 +181,17 @@ fn span<'a>(of: impl Iterator<Item = &'a Critical>) -> Option<Uncertain> {
 fn against(varied: &Varied, found: &[Critical]) -> ChartPanel {
     let series = varied.series.iter().enumerate();
     let series = series.map(|(place, (name, belongs))| {
-        let of = found.iter().filter(|one| belongs(one));
+        let of = found.iter().filter(|one| belongs(one) && one.counts());
         let points = joined(name, of.map(Critical::point))?;
         Some(if place == 1 { points.open() } else { points })
     });
+    let others = found.iter().filter(|one| !one.counts());
+    let others = points(
+        "leaks, or depends on the threshold",
+        others.map(Critical::point),
+    );
     ChartPanel::new(varied.axis, "critical width, *w*_{c}/(2*a*)")
         .x_scale(varied.scale)
         .with_all(numbered(series))
+        .with_all(others.map(|points| points.series(2).open().tint(Tint::Grey)))
 }

@@ -125,8 +125,7 @@ fn cells((line, other): &Pair<'_, '_>) -> Vec<Vec<String>> {
 fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> ChartFigure {
     let empty = || flow_against_force().with(Reference::horizontal(0.0));
     let tight: Vec<&ForceLine<'_>> = pairs.iter().map(|(line, _)| *line).collect();
-    let all =
-        with_branches(empty(), &tight).title("frictionless; filled: from rest, open: from jammed");
+    let all = with_branches(empty(), &tight).title("frictionless");
     let both = || {
         pairs
             .iter()
@@ -146,8 +145,11 @@ fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> ChartFigure {
             let title = format!("from rest, *ε̇* = {}", without.strain_rate);
             empty().with_all(numbered(points)).title(&title)
         });
-    grid(2, [all].into_iter().chain(beside))
-        .share_y()
+    let near_zero = with_branches(empty(), &tight)
+        .x_range(4e-4..=1.1e-3)
+        .y_range(-0.05..=0.05)
+        .title("frictionless, near *J* = 0");
+    grid(3, [all, near_zero].into_iter().chain(beside))
         .legend(LegendPlace::Inside)
         .colour_scale(colours_of_rates(lines))
 }
