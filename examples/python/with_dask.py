@@ -1,4 +1,4 @@
-"""Replicas through Dask; with the address of a scheduler, on its cluster."""
+"""Replicates through Dask; with the address of a scheduler, on its cluster."""
 
 from dask.distributed import Client
 

@@ -1,4 +1,4 @@
-"""Replicas through `concurrent.futures`; threads would do as well, for the engine lets go of the interpreter."""
+"""Replicates through `concurrent.futures`; threads would do as well, for the engine lets go of the interpreter."""
 
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context

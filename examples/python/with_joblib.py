@@ -1,4 +1,4 @@
-"""Replicas through joblib."""
+"""Replicates through joblib."""
 
 from joblib import Parallel, delayed
 

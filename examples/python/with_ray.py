@@ -1,4 +1,4 @@
-"""Replicas through Ray."""
+"""Replicates through Ray."""
 
 import ray
 

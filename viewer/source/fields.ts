@@ -15,7 +15,10 @@ export interface Field {
   values(frame: Frame, tube: Welcome, into: Float32Array): void;
 }
 
-/** Part of the grains whose pressure, and where the wave stands speed, lies within the colours; crates/run/src/scene/field.rs has the same. */
+/**
+ * Part of the grains whose pressure, and where the wave stands speed, lies within the colours. crates/run/src/scene/field.rs
+ * has the same.
+ */
 const COVERED = 0.98;
 
 /** The speed that colours reach to: that of the wave, or where it stands a round one that few grains exceed. */

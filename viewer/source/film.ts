@@ -63,7 +63,7 @@ export abstract class Film {
     if (this.rows.length > ROWS) this.thinRows();
   }
 
-  /** Lets rows go evenly, so that those from long ago are as near to each other as those from a while ago; the newest stays. */
+  /** Lets rows go evenly: those from long ago stay as near to each other as later ones, and the newest stays. */
   private thinRows(): void {
     const newest = this.rows[this.rows.length - 1];
     const thin = () => (this.rows = this.rows.filter((row) => row.number % this.each === 0 || row === newest));

@@ -1,4 +1,4 @@
-/** What the server sends and takes, besides its types: the bytes of a frame as crates/viewer/src/frame.rs has them, and units. */
+/** What the server sends and takes, besides its types: the bytes of a frame, as in crates/viewer/src/frame.rs, and units. */
 import type { Head, Notice, Sliders, Welcome } from "./messages";
 
 export type { Command, Row, Steered, Turn, Welcome } from "./messages";

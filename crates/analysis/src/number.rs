@@ -98,7 +98,7 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     typeset(&format!("{value:.decimals$}"))
 }
 
-/// A number with so many significant digits as programs write it: plain where that reads well, with a power of ten elsewhere.
+/// A number with so many significant digits, as programs write it: plain where that reads well, else with a power of ten.
 pub fn significant(value: f64, digits: usize) -> String {
     let after_the_first = digits - 1;
     let scientific = format!("{value:.after_the_first$e}");

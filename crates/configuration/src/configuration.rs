@@ -382,9 +382,10 @@ impl Configuration {
         self.grains.number as f64 * largest * largest * largest / volume
     }
 
-    /// Whether contacts are kept from step to step: with friction, or in an elastic tube.
+    /// Whether contacts are kept from step to step: with friction or cohesion, or in an elastic tube.
     pub fn remembers_contacts(&self) -> bool {
-        self.contact.friction.is_some() || self.wall.elastic.is_some()
+        let contact = &self.contact;
+        contact.friction.is_some() || contact.cohesion.is_some() || self.wall.elastic.is_some()
     }
 
     /// About how many wall spheres a grain at the wall meets at once.

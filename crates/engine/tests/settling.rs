@@ -70,7 +70,7 @@ fn the_wall_bears_the_weight() {
     }
 }
 
-/// Without its springs a pile of rough grains would give way once more.
+/// Without its springs a pile of frictional grains would give way once more.
 #[test]
 fn the_springs_of_contacts_stay() {
     let simulation = settled(&standing(), heavy(HERTZ, Some(FRICTION), Kernel::Fast));

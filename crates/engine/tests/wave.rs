@@ -167,7 +167,7 @@ fn a_wave_without_height_drives_no_flow() {
         println!("driven {flow:.3}");
         match friction {
             None => assert!(flow > 0.5, "{flow}"),
-            // Measured 0.001: rough grains stick to the rough wall, which does not move along the tube.
+            // Measured 0.001: frictional grains stick to the rough wall, which does not move along the tube.
             Some(_) => assert!(flow.abs() < 0.05, "{flow}"),
         }
     }

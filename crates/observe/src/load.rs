@@ -84,9 +84,9 @@ pub struct Load {
     /// sigma_ab = (sum over contacts of l_a f_b + sum over grains of m dv_a dv_b)/V \[m/(d t^2)\].
     ///
     /// l is the branch vector: from the partner's centre to the grain's or, of a contact with the wall, from the point of
-    /// contact; f is the force on the grain; dv its velocity less the mean of all; V the [`clear_volume`]. Positive in
-    /// compression; a third of the trace is the pressure. Rows are a. dv is less the velocity of the centre of mass. On the
-    /// wall it is the pressure on the clear bore, R/(R - d_w/2) times that of a [profile](crate::ProfileBin).
+    /// contact; f is the force on the grain; dv its velocity less that of the centre of mass; V the [`clear_volume`].
+    /// Positive in compression; a third of the trace is the pressure. Rows are a. In a straight tube at rest its part across
+    /// is the pressure on the clear bore, R/(R - d_w/2) times that of a [profile](crate::ProfileBin).
     pub stress: DMat3,
 }
 

@@ -206,7 +206,7 @@ pub(crate) fn verdict(passed: bool) -> &'static str {
     if passed { "passed" } else { "**failed**" }
 }
 
-/// A number with so many significant digits, as programs write it.
+/// [`significant`], but 0 as "0" and what is not finite as a dash.
 fn written(value: f64, digits: usize) -> String {
     match value {
         0.0 => "0".to_owned(),

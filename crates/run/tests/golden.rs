@@ -84,7 +84,7 @@ const CASES: &[(&str, &str, &str)] = &[
         "tube.waves=1 grains.number=30 run.periods=1 body.gravity=[0.001,-0.002,0.0005] initial.state=settled",
     ),
     (
-        "rough grains settled under gravity",
+        "frictional grains settled under gravity",
         "frictionless",
         "tube.waves=1 grains.number=30 run.periods=1 body.gravity=[0,-0.002,0] initial.state=settled \
          drive.width=1.8 contact.static_friction=0.5 contact.tangential_stiffness=0.5",

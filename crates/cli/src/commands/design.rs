@@ -124,7 +124,7 @@ fn in_words(design: &Design) -> String {
     }
     if design.groups.iter().any(|group| group.place() == "near") {
         lines.push(
-            "near: beyond the range by less than makes two tubes differ, and counted as within it"
+            "near: outside the range, but by less than two tubes that count as alike differ; counted as inside"
                 .to_owned(),
         );
     }

@@ -19,7 +19,7 @@ pub(crate) mod view;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::mpsc;
+use std::sync::{Once, mpsc};
 use std::time::Duration;
 
 pub(crate) use peristalsis_analysis::number::{counted, significant};
@@ -120,7 +120,9 @@ fn packing<T>(configuration: &Configuration, work: impl FnOnce() -> T) -> T {
     std::thread::scope(|scope| {
         scope.spawn(move || {
             if ended.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
-                say(&words);
+                // Once, however many runs are packed at a time.
+                static SAID: Once = Once::new();
+                SAID.call_once(|| say(&words));
             }
         });
         let outcome = work();

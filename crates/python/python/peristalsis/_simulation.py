@@ -83,7 +83,7 @@ class Simulation(Made):
         Parameters
         ----------
         periods : float, optional
-            Wavelengths that the wave is to run, as `period` counts them, also where a schedule changes its speed: each takes
+            Wavelengths that the wave is to run, as `period` counts them, also where a schedule changes its speed. Each takes
             T = 1/strain_rate where that is constant.
         duration : float, optional
             Time [t] instead of periods.

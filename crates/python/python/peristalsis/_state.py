@@ -304,14 +304,14 @@ class State:
         sigma[a, b] = (sum over contacts of l_a f_b + sum over grains of m dv_a dv_b) / V
 
         l is the branch vector, from the partner's centre to the grain's or, of a contact with the wall, from where they
-        touch to the grain's centre; f is the force on the grain, dv its velocity less the mean of all grains, and V the
+        touch to the grain's centre; f is the force on the grain, dv its velocity less that of the centre of mass, and V the
         `volume` that the wall leaves clear. Grains that wait outside an open tube do not count. A third of the trace is the
         pressure. In a straight tube at rest (sigma[0, 0] + sigma[1, 1])/2 is the pressure on the area 2 pi (R - d_w/2) L of
         the clear bore. ``wall_pressure`` of `profile` and `summary` is that on the area 2 pi R L through the centres of the
         wall's spheres, smaller by the factor 1 - d_w/(2 R).
 
-        dv is less the mean over the masses of all grains; ``granular_temperature`` of `timeseries` is about the mean of their
-        velocities, which differs where sizes differ.
+        ``granular_temperature`` of `timeseries` is about the mean of the velocities, which differs from that of the centre
+        of mass where sizes differ.
 
         Examples
         --------
@@ -471,8 +471,10 @@ class State:
         return self._run.waves()
 
     def summary(self) -> Summary:
-        """The outcome so far, as ``summary.json`` of the command line has it. Where that has null a number is NaN if it is not
-        known yet, and `None` if there is none in this run, or none so far: no transition, no friction, an open tube.
+        """The outcome so far, as ``summary.json`` of the command line has it.
+
+        Where that has null a number is NaN if it is not known yet, and `None` if there is none in this run, or none so far:
+        no transition, no friction, an open tube.
 
         Returns
         -------

@@ -147,8 +147,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         })
     });
     let spans: Vec<String> = spans.collect();
+    let is_known = !spans.is_empty();
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());
-    let summary = PROSE.text("summary", values!(spans = spans.join(", ")));
+    let summary = match is_known {
+        true => PROSE.text("summary", values!(spans = spans.join(", "))),
+        false => PROSE.text("none counts", &[]),
+    };
     let mut draft = Draft::of(PROSE);
     let each = || {
         found
@@ -165,7 +169,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let panels = found.iter().map(|(varied, of)| against(varied, of));
     let chart = grid(2, panels).legend(LegendPlace::Below);
     draft.chart("softness-or-geometry", &[], chart)?;
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q3_NEEDED))
+    let verdict = Verdict::answered_if(is_known);
+    Ok(draft.concluded(verdict, summary, statistics, &Q3_NEEDED))
 }
 
 /// The largest less the smallest w_c/(2 a); `None` of fewer than two.

@@ -16,7 +16,8 @@ use sha2::{Digest, Sha256};
 use super::{Reproduction, Work};
 use crate::error::ReproduceError;
 
-/// Grains times steps a second of one core without and with contacts that are remembered: a first guess, which the runs that were computed replace.
+/// Grains times steps a second of one core without and with contacts that are remembered: a first guess, which the runs that
+/// were computed replace.
 const SPEED: [f64; 2] = [3e7, 1e7];
 /// Seconds that any run takes beside its steps.
 const SECONDS_A_RUN: f64 = 0.1;

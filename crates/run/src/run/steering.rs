@@ -24,7 +24,7 @@ fn time_of_cycles(frequency: &Course, now: f64, cycles: f64) -> Option<f64> {
     let last = frequency.knots().last().map_or(now, |knot| knot.0.max(now));
     let grown = |time: f64| frequency.integral(time) - frequency.integral(now);
     if grown(last) < cycles {
-        // At rest the product is the same to the bit whatever was before.
+        // After the last knot a constant rate gives cycles/rate to the bit.
         let time = (last - now) + (cycles - grown(last)) / frequency.value(last);
         return time.is_finite().then_some(time);
     }

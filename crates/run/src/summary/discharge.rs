@@ -19,7 +19,8 @@ pub struct Discharge {
     pub hold_up: (f64, f64),
     /// Mass that has left through the outlet since the start.
     pub discharged: f64,
-    /// Mass that has left beside the tube since the start: of grains that had gone through its wall.
+    /// Mass that has left beside the tube since the start, also since the last sample: of grains that had gone through its
+    /// wall.
     pub leaked: f64,
     /// Grains that have gone from the inlet to the outlet in the whole run.
     pub passed: u64,

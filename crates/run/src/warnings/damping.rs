@@ -12,8 +12,8 @@ const CROWD: f64 = 3.0;
 const SLIP: f64 = 3.5;
 /// 1/m of rolling over that, of equal spheres: 2 R_ij^2/I with R_ij = d/4 and I = m d^2/10.
 const ROLLING: f64 = 0.625;
-/// The same of the fastest motion of a lattice in which six springs meet at each sphere, over 1/m of a sphere: 6 where they are
-/// alike. Measured: with a step of 0.05 the wall of the preset frictional holds at 0.2, and gains energy at 0.3.
+/// 1/m of the fastest motion of a lattice over 1/m of a sphere. Six springs that are alike would give 6. Measured: with a
+/// step of 0.05 the wall of the preset frictional holds at 0.2, and gains energy at 0.3; 8 lies between.
 const LATTICE: f64 = 8.0;
 
 /// Each dashpot that takes its whole velocity in a step, by rough measure: h eta/m > 1 for its own mass m. The step brings
@@ -25,7 +25,7 @@ pub(super) fn warnings(configuration: &Configuration) -> Vec<Warning> {
     let warning = |(key, damping, per_mass): (&'static str, f64, f64)| {
         let time = 1.0 / (damping * per_mass);
         let message = format!(
-            "a damping of {damping:.3} stops a motion within {}, too fast for a step of {}, and energy can grow of itself: \
+            "its damping stops a motion within {}, too fast for a step of {}, and energy can grow of itself: \
              take a shorter run.time_step or less damping",
             span(time),
             span(step)
@@ -122,7 +122,7 @@ mod tests {
         ] {
             assert_eq!(keys(preset, settings), [key], "{settings}");
         }
-        // Ten times as many steps.
+        // Fifty times as many steps.
         assert_eq!(
             keys("frictional", "wall.drag=10 run.time_step=0.001"),
             [""; 0]

@@ -130,7 +130,7 @@ fn wide_grains(configuration: &Configuration) -> Option<Warning> {
     let message = format!(
         "a grain of diameter {largest} is wider than the clear bore of the straight tube, 2 a - d_w = {bore:.3}: the wall \
          presses into it, however weak the drive; take smaller grains, or tube.radius = {:.3} or more",
-        0.5 * (largest + wall.sphere_diameter)
+        (500.0 * (largest + wall.sphere_diameter)).ceil() / 1000.0
     );
     let key = "grains.diameter_max";
     (largest > bore && configuration.grains.number > 0).then_some(Warning { key, message })

@@ -83,19 +83,20 @@ fn of_whom(configuration: &Configuration) -> &'static str {
     }
 }
 
-/// Part of the energy that entered which the ledger may miss.
+/// Part of the energy that entered, or was there at first, which the ledger may miss.
 const LARGEST_RESIDUAL: f64 = 0.05;
 
 /// That energy came or went which no force accounts for; of less than a period nothing is said.
 fn unaccounted(run: &Run) -> Option<Warning> {
     let residual = run.simulation().energy_residual();
     let message = format!(
-        "energy is not accounted for: {:.0} % of what entered appeared or vanished of itself, so forces change too much in a \
-         step; take a shorter run.time_step until energy_residual is small",
+        "energy is not accounted for: {:.0} % of what entered, or was there at first, appeared or vanished of itself, so \
+         forces change too much in a step; take a shorter run.time_step until energy_residual is small",
         100.0 * residual
     );
     let key = "run.time_step";
-    let is_told = run.recorder().periods() > 0 && residual > LARGEST_RESIDUAL;
+    let is_large = residual.is_finite() && residual > LARGEST_RESIDUAL;
+    let is_told = run.recorder().periods() > 0 && is_large;
     is_told.then_some(Warning { key, message })
 }
 

@@ -93,6 +93,10 @@ impl Store {
             ..Packed::default()
         };
         for identity in identities {
+            let finished = known.get(identity).is_some_and(Entry::is_computed);
+            if finished || leases.contains_key(identity) {
+                continue;
+            }
             let unpacked = RunFiles::new(scratch, *identity);
             let reason = match unpacked.verdict(None) {
                 Verdict::Done { .. } => None,
@@ -103,10 +107,6 @@ impl Store {
             };
             if let Some(reason) = reason {
                 packed.refused.push((*identity, reason));
-                continue;
-            }
-            let finished = known.get(identity).is_some_and(Entry::is_computed);
-            if finished || leases.contains_key(identity) {
                 continue;
             }
             let target = self.run_folder(*identity);

@@ -40,7 +40,7 @@ impl State {
 
     /// Whether it may still give a row.
     pub fn is_unfinished(self) -> bool {
-        matches!(self, Self::Pending | Self::Leased | Self::Checkpointed)
+        !matches!(self, Self::Done | Self::Failed)
     }
 
     pub(crate) fn of_name(name: &str) -> Self {

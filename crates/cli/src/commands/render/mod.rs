@@ -192,7 +192,7 @@ fn still(
         let frames = FrameSource::nearest(&path, arguments.at)?;
         return Ok(Some(draw(&run, look, &frames)?));
     }
-    let run = Run::new(run.configuration().clone())?;
+    let run = start_of(&run)?;
     let first = FrameSource::now(&run, with_contacts);
     let Some(at) = arguments.at else {
         return Ok(Some(draw(&run, look, &[first])?));
@@ -201,7 +201,7 @@ fn still(
     let window = Window { from, to };
     let steps = run.configuration().run.steps();
     let plan = TrajectoryPlan::new(&request(None, window), run.configuration(), 0, steps)?;
-    let drawn = Run::new(run.configuration().clone())?;
+    let drawn = start_of(&run)?;
     let mut source = FrameSource::of_run(run, plan, with_contacts);
     while !source.is_over() {
         if stop.requested().is_some() {
@@ -219,8 +219,8 @@ fn start_of(run: &Run) -> Result<Run, Failure> {
     let configuration = run.configuration().clone();
     packing(&configuration.clone(), || Run::new(configuration)).map_err(|error| match error {
         RunError::NotPlaced => Failure::usage(
-            "displacements count from the start of the run, where a program placed its grains",
-            "take --from trajectory, if there is one, or another --colour",
+            "a program placed the grains at the start of this run, from which this counts",
+            "take --from trajectory, if there is one, or --from state with another --colour than axial-displacement",
         ),
         other => other.into(),
     })
@@ -256,7 +256,7 @@ fn frames(arguments: &RenderArguments, run: Run, look: Look) -> Result<FrameSour
         let plan = TrajectoryPlan::onward(&request, run.configuration(), now, duration)?;
         return Ok(FrameSource::of_run(run, plan, with_contacts));
     }
-    let run = Run::new(run.configuration().clone())?;
+    let run = start_of(&run)?;
     let steps = run.configuration().run.steps();
     let plan = TrajectoryPlan::new(&request, run.configuration(), 0, steps)?;
     Ok(FrameSource::of_run(run, plan, with_contacts))

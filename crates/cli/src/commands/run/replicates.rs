@@ -29,7 +29,7 @@ const STEM: &str = "seed-";
 
 /// The folders of replicates.
 pub(super) struct Replicates {
-    /// Locked, so that no other program goes on with the replicates. The folder of each replicate is locked when its turn comes.
+    /// Locked, so that no other program goes on with the replicates. That of each replicate is locked when its turn comes.
     folder: RunFolder,
     each: Vec<(u64, PathBuf)>,
     /// The warnings that were said already.

@@ -222,7 +222,8 @@ pub(super) struct MeanForce {
 }
 
 impl MeanForce {
-    /// The mean force that each sphere of these rings, which are all of the wall, has still to lose; its power goes to the tally.
+    /// The mean force that each sphere of these rings, which are all of the wall, has still to lose; its power goes to the
+    /// tally.
     pub(super) fn of(wall: &ElasticWall, rings: &[Rings], tally: &mut Tally) -> Record {
         let mut mean_force = Self::default();
         rings.iter().for_each(|rings| mean_force.add(wall, rings));

@@ -228,9 +228,9 @@ impl Motion {
 
 /// Outcome of an impact whose tangential law has one coefficient of friction, or which has no friction.
 ///
-/// Polar coordinates of the separation; while a contact sticks u follows the slip and the force is k_t u + eta_t v_t; where it
-/// slides, the force is mu f_n. Without a dashpot it may stick again, with k_t |u| = mu f_n. It
-/// ends where the force of the Hertz law vanishes, or the overlap under the linear law.
+/// Polar coordinates of the separation. While a contact sticks u follows the slip, and the force is k_t u + eta_t v_t; where
+/// it slides, the force is mu f_n. Without a dashpot it may stick again, with k_t |u| = mu f_n; with one it slides to its end.
+/// The impact ends where the force of the Hertz law vanishes, or the overlap under the linear law.
 pub(crate) fn outcome(impact: &Impact) -> Outcome {
     let motion = Motion::of(impact);
     let relative = impact.relative_velocity();
