@@ -284,8 +284,9 @@ class Collapse:
         >>> x = np.linspace(-0.5, 0.5, 21)
         >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
         >>> collapse = analysis.Collapse(curves, "finite_size")
-        >>> collapse.quality([0.5, 1.0, 0.0]).overlap > 0.5
-        True
+        >>> found = collapse.quality([0.5, 1.0, 0.0])
+        >>> found.quality < 0.1, found.is_connected, found.compared, found.overlap > 0.5
+        (True, True, 51, True)
         """
         quality, _ = _core.apply_collapse(self.curves, self.scaling, [float(p) for p in parameters])
         return result(CollapseQuality, quality)

@@ -109,8 +109,8 @@ class CollapseQuality:
     >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
     >>> collapse = analysis.Collapse(curves, "finite_size")
     >>> found = collapse.quality([0.5, 1.0, 0.0])
-    >>> found.quality < 0.1, found.is_connected, found.compared
-    (True, True, 51)
+    >>> found.quality < 0.1, found.is_connected, found.compared, found.overlap > 0.5
+    (True, True, 51, True)
     """
 
     quality: float
@@ -382,9 +382,15 @@ class JointTest:
 
     Examples
     --------
+    >>> import numpy as np
     >>> from peristalsis import analysis
-    >>> analysis.JointTest(chi_squared=5.99, degrees_of_freedom=2, probability=0.05).degrees_of_freedom
-    2
+    >>> x = np.linspace(-0.5, 0.5, 21)
+    >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
+    >>> collapse, steps = analysis.Collapse(curves, "finite_size"), [0.1, 0.1, 0.02]
+    >>> found = collapse.fit([0.4, 0.9, 0.0], steps, starts=2)
+    >>> right, wrong = (collapse.joint_test(found, values, steps) for values in ([0.5, 1.0, None], [0.7, 1.0, None]))
+    >>> right.probability > 0.5, wrong.probability < 0.001, right.degrees_of_freedom
+    (True, True, 2)
     """
 
     chi_squared: float
