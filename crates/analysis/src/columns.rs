@@ -31,7 +31,9 @@ pub(crate) fn mean_and_scatter(series: &[f64]) -> (f64, f64) {
 }
 
 /// Jackknife error of an estimator from its values with one replicate left out: `sqrt((n - 1)/n sum (v_i - <v>)^2)`.
-pub(crate) fn jackknife_error(without_one: &[f64]) -> f64 {
+///
+/// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
+pub fn jackknife_error(without_one: &[f64]) -> f64 {
     let replicates = without_one.len() as f64;
     let (_, scatter) = mean_and_scatter(without_one);
     ((replicates - 1.0) / replicates * scatter).sqrt()

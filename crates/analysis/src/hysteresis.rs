@@ -4,7 +4,7 @@ use crate::error::Error;
 use crate::logistic::{FractionCrossing, Fractions};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::minimum::minimise_from_grid;
-use crate::uncertain::{Interval, Uncertain};
+use crate::uncertain::Uncertain;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -51,12 +51,6 @@ pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<
     let jammed = Fractions::new(jammed.0, jammed.1)?;
     let from_jammed = jammed.crossing()?;
     let (low, high) = (from_rest.width, from_jammed.width);
-    let value = high.value - low.value;
-    let together = |a: f64, b: f64| (a * a + b * b).sqrt();
-    let ends = |low_ends: Interval, high_ends: Interval| Interval {
-        lower: value - together(high.value - high_ends.lower, low_ends.upper - low.value),
-        upper: value + together(high_ends.upper - high.value, low.value - low_ends.lower),
-    };
     let least = rest.least().min(jammed.least());
     let largest = rest.largest().max(jammed.largest());
     let common = |half: f64| rest.at_half(half).value + jammed.at_half(half).value;
@@ -71,12 +65,7 @@ pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<
     Ok(Hysteresis {
         from_rest,
         from_jammed,
-        loop_width: Uncertain {
-            value,
-            error: together(low.error, high.error),
-            interval_68: ends(low.interval_68, high.interval_68),
-            interval_95: ends(low.interval_95, high.interval_95),
-        },
+        loop_width: high - low,
         likelihood_ratio,
         probability: chi_squared_tail(likelihood_ratio, 1),
     })

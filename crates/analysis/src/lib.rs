@@ -69,6 +69,7 @@ pub use bootstrap::{Bootstrap, Resampled};
 pub use collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
 pub use collapse_estimate::{CollapseEstimate, JointTest};
 pub use collapse_fit::{Collapse, Transform};
+pub use columns::jackknife_error;
 pub use dip::{DipTest, dip_test};
 pub use divergence::{LawEvidence, compare_laws, compare_laws_with_scatter};
 pub use ensemble::{Moments, ensemble_moments, mean_and_error, variance};
@@ -87,6 +88,7 @@ pub use line::{
 };
 pub use logistic::{FractionCrossing, fraction_crossing};
 pub use mixture::{Histogram, Peak, TwoPeaks, histogram, two_peaks};
+pub use numerics::gamma::chi_squared_tail;
 pub use scaling::Scaling;
 pub use scatter_law::{ScatterLawFit, fit_law_with_scatter};
 pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, second_moment_peak};

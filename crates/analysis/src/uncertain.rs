@@ -1,5 +1,7 @@
 //! A number with its uncertainty.
 
+use core::ops::Sub;
+
 use crate::columns::mean_and_scatter;
 use crate::numerics::minimum::crossing;
 use crate::numerics::student;
@@ -181,6 +183,42 @@ impl Uncertain {
             (self.value - reference) / self.error
         }
     }
+
+    /// Whether the 95 per cent interval lies above a bound.
+    pub fn is_above(&self, bound: f64) -> bool {
+        self.interval_95.lower > bound
+    }
+
+    /// Whether the 95 per cent interval lies below a bound.
+    pub fn is_below(&self, bound: f64) -> bool {
+        self.interval_95.upper < bound
+    }
+}
+
+/// One number less another, of independent errors. Errors add in quadrature, and so do the sides of the intervals: the lower
+/// side of the first with the upper side of the second, and the other way round.
+///
+/// Source: Zou & Donner, Statistics in Medicine 27, 1693 (2008), equation 3.
+impl Sub for Uncertain {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        let between = |of: fn(&Self) -> Interval| {
+            let [(down, up), (other_down, other_up)] = [&self, &other].map(|one| {
+                let Interval { lower, upper } = of(one);
+                (lower - one.value, upper - one.value)
+            });
+            let ends = [-down.hypot(other_up), up.hypot(other_down)];
+            let [lower, upper] = ends.map(|end| end - (other.value - self.value));
+            Interval::new(lower, upper)
+        };
+        Self {
+            value: self.value - other.value,
+            error: self.error.hypot(other.error),
+            interval_68: between(|one| one.interval_68),
+            interval_95: between(|one| one.interval_95),
+        }
+    }
 }
 
 /// Quantile of sorted values by linear interpolation between order statistics.
@@ -218,6 +256,24 @@ mod tests {
         assert!((ratio.error - 1.0).abs() < 1e-12);
         let product = ratio.interval_95.lower * ratio.interval_95.upper;
         assert!((product - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn differences_have_the_sides_of_both() {
+        let more = Uncertain::normal(3.0, 0.3) - Uncertain::normal(1.0, 0.4);
+        let same = Uncertain::normal(2.0, 0.5);
+        assert!((more.error - same.error).abs() < 1e-15);
+        assert!((more.interval_95.upper - same.interval_95.upper).abs() < 1e-12);
+        assert!(more.is_above(1.0) && !more.is_above(1.1) && more.is_below(3.0));
+        let sided = |lower, upper| Uncertain {
+            interval_95: Interval::new(lower, upper),
+            ..Uncertain::normal(1.0, 0.1)
+        };
+        let apart = sided(0.7, 1.1) - sided(0.6, 1.9);
+        assert!((apart.interval_95.lower + 0.3_f64.hypot(0.9)).abs() < 1e-15);
+        assert!((apart.interval_95.upper - 0.1_f64.hypot(0.4)).abs() < 1e-15);
+        let open = Uncertain::student(1.0, f64::NAN, 0) - same;
+        assert!(!open.is_above(-1e9) && !open.is_below(1e9));
     }
 
     #[test]

@@ -107,15 +107,13 @@ impl Step {
     }
 }
 
-/// One number less another, of independent errors.
-pub(crate) fn difference(one: &Uncertain, other: &Uncertain) -> Uncertain {
-    Uncertain::normal(one.value - other.value, one.error.hypot(other.error))
-}
-
-/// The same where an error that is not known, of a single run for instance, counts as none.
+/// One number less another, where an error that is not known, of a single run for instance, counts as none.
 pub(crate) fn distance(one: &Uncertain, other: &Uncertain) -> Uncertain {
-    let known = |number: &Uncertain| Uncertain::normal(number.value, number.error.max(0.0));
-    difference(&known(one), &known(other))
+    let known = |number: &Uncertain| match number.error.is_nan() {
+        true => Uncertain::normal(number.value, 0.0),
+        false => *number,
+    };
+    known(one) - known(other)
 }
 
 /// Numbers with errors as columns for fits: abscissa, value, and error, which is at least `least`.
@@ -305,9 +303,9 @@ impl<'a> Branch<'a> {
 
     /// Whether the step is a jump: high, and by many of its errors.
     pub(crate) fn jumps(&self) -> bool {
-        self.jump().is_some_and(|jump| {
-            jump.height.value > LEAST_JUMP && jump.height.value > CLEAR * jump.height.error
-        })
+        let clear = |height: Uncertain| height.deviations_from(0.0) > CLEAR;
+        self.jump()
+            .is_some_and(|jump| jump.height.value > LEAST_JUMP && clear(jump.height))
     }
 
     /// J/Jmax midway between the two flows at the step.

@@ -11,7 +11,7 @@ use crate::critical::Line;
 use crate::draft::Draft;
 use crate::exhibit::{cell_of, coloured, ends, grid, points, probability, rate_colours};
 use crate::finding::{Quantity, ReportTable};
-use crate::thresholds::{BY_CHANCE, MOST_STRETCH, OVERLAP, RESOLVED};
+use crate::thresholds::{BY_CHANCE, LEAST_STRETCH, MOST_STRETCH, OVERLAP, RESOLVED};
 use crate::walls::OnWall;
 
 /// Searches for the best collapse, and the seed of their starts.
@@ -164,6 +164,15 @@ impl Collapsed {
         let claimed = self.claimed.as_ref()?;
         let agrees = claimed.joint?.probability >= BY_CHANCE;
         (agrees || claimed.corrected.is_none()).then_some(agrees)
+    }
+
+    /// Whether the curves collapse with any exponents, be these known well or not; `None` in between.
+    pub(crate) fn holds(&self) -> Option<bool> {
+        match self.found.stretch {
+            stretch if stretch <= LEAST_STRETCH => Some(true),
+            stretch if stretch > MOST_STRETCH => Some(false),
+            _ => None,
+        }
     }
 
     /// Probability of the source's exponents, both at once, and what a correction to scaling makes of it.

@@ -1,5 +1,7 @@
 //! Findings of experiments.
 
+use core::fmt;
+
 use peristalsis_formats::Table;
 use serde::Serialize;
 
@@ -50,6 +52,19 @@ pub struct Statistics {
     pub replicates: usize,
     /// Runs in all.
     pub runs: usize,
+}
+
+/// Strain rates × widths × replicates.
+impl fmt::Display for Statistics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            strain_rates,
+            widths,
+            replicates,
+            ..
+        } = self;
+        write!(f, "{strain_rates} × {widths} × {replicates}")
+    }
 }
 
 impl Statistics {
@@ -142,7 +157,7 @@ pub struct Finding {
     pub statistics: Statistics,
     /// The runs that a verdict takes.
     pub needed: Statistics,
-    /// The parameter that is varied at each strain rate: "width", "force", "back pressure".
+    /// The parameter that is varied at each strain rate: "width", "force", "friction", "bottleneck", "back pressure" or "outlet".
     pub varied: &'static str,
     /// Numbers, the most important first.
     pub quantities: Vec<Quantity>,

@@ -188,9 +188,7 @@ impl<'a> ForceLine<'a> {
             {
                 Kind::Jump
             }
-            Some(height) if height.value + 2.0 * height.error < least && self.flow.spans() => {
-                Kind::Smooth
-            }
+            Some(height) if height.is_below(least) && self.flow.spans() => Kind::Smooth,
             _ => Kind::Unclear,
         }
     }

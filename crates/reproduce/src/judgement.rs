@@ -8,7 +8,7 @@ use peristalsis_analysis::Uncertain;
 
 use crate::exhibit::listed;
 use crate::finding::{Statistics, Verdict, WallVerdict};
-use crate::thresholds::{AGREES_WITHIN, LARGE_ERROR, LEAST_RATES, MOST_RATES};
+use crate::thresholds::{LEAST_RATES, LONG, MOST_RATES};
 
 /// Whether the source's value lies in the 95 per cent interval of ours; `None` where that interval is not known, or so
 /// wide that it says little.
@@ -17,8 +17,17 @@ pub(crate) fn agrees(found: &Uncertain, source: f64) -> Option<bool> {
         found.interval_95.contains(source),
         found.interval_95.length(),
     );
-    let is_narrow = length <= 2.0 * AGREES_WITHIN * LARGE_ERROR * source.abs();
+    let is_narrow = length <= LONG * source.abs();
     (is_narrow || !within && !length.is_nan()).then_some(within)
+}
+
+/// What is said of a part of a claim.
+pub(crate) const fn said(holds: Option<bool>) -> &'static str {
+    match holds {
+        Some(true) => "holds",
+        Some(false) => "does not hold",
+        None => "cannot be told",
+    }
 }
 
 /// Whether all parts of a claim hold: not, where one does not; `None` where one of the others cannot be told.

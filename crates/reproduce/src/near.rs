@@ -26,9 +26,9 @@ pub(crate) struct Near {
     variance: [Vec<f64>; 3],
 }
 
-/// Whether the linear term is there: its error is below half of it.
+/// Whether the linear term is there.
 fn is_clear(fit: &InverseFit) -> bool {
-    fit.linear.error < 0.5 * fit.linear.value
+    fit.linear.is_above(0.0)
 }
 
 impl Near {

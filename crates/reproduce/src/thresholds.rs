@@ -27,7 +27,8 @@ pub(crate) const LEAST_ERROR_AGAINST_FORCE: f64 = 2e-3;
 
 /// Points on either side that are continued to a jump by a straight line: the fewest that show whether a line fits.
 pub(crate) const CONTINUED: usize = 3;
-/// Errors from which on a difference of two flows counts: one comparison among many differs by three of its errors by chance.
+/// Errors from which on a difference of two flows counts that is chosen among many: one of them is three of its errors by
+/// chance. Where a single difference is asked for, its 95 per cent interval decides.
 pub(crate) const CLEAR: f64 = 4.0;
 /// Height of J/Jmax from which on a fall between two widths counts: below lies the scatter of neighbouring widths.
 pub(crate) const LEAST_FALL: f64 = 0.05;
@@ -40,12 +41,11 @@ pub(crate) const LEAST_JUMP_AGAINST_FORCE: f64 = 0.25;
 
 // What agrees with the source.
 
-/// Standard errors of a difference below which there may be none: the 95 per cent interval of a normal number.
-pub(crate) const AGREES_WITHIN: f64 = 2.0;
-/// Error beyond which a value says nothing of the source's, as a fraction of the latter: hardly any value would disagree.
-pub(crate) const LARGE_ERROR: f64 = 0.25;
+/// Length of the 95 per cent interval, as a fraction of the source's value, beyond which a value says nothing of it: hardly
+/// any value would disagree.
+pub(crate) const LONG: f64 = 1.0;
 
-/// Probability below which what a claim says is excluded: that of two errors.
+/// Probability below which what a claim says is excluded, as by the 95 per cent interval.
 pub(crate) const BY_CHANCE: f64 = 0.05;
 
 /// Strain rates at which a claim can be told, at least, for a wall to have a verdict.
@@ -81,11 +81,6 @@ pub(crate) const SPAN: (f64, f64) = (0.3, 0.5);
 pub(crate) const GIVEN_WAY: f64 = 0.3;
 /// Flow against the wave, in parts of Jmax, that would go unnoticed.
 pub(crate) const LEAST_BACK_FLOW: f64 = 0.01;
-/// Errors by which all flows must be above −[`LEAST_BACK_FLOW`] to say that there is no back flow: the 95 per cent interval.
-pub(crate) const NO_BACK_FLOW_BY: f64 = 2.0;
-/// Errors by which a flow must differ from 0 to have a direction where one point is asked for; less than [`CLEAR`], since
-/// nothing is chosen among many.
-pub(crate) const SIGNED_BY: f64 = 2.0;
 /// J/Jmax below which a flow is unjammed, clear of the jump.
 pub(crate) const UNJAMMED: f64 = 0.2;
 /// J/Jmax from which on a flow is fast: midway between the two flows.
@@ -111,7 +106,9 @@ pub(crate) const FREE_FLIGHT: f64 = 0.01;
 
 /// Fraction of the points that must be compared: with less a search wins by pulling the curves apart.
 pub(crate) const OVERLAP: f64 = 0.75;
-/// Distance of the points from one curve, in their errors, from which on there is no collapse.
+/// Distance of the points from one curve, in their errors, up to which there is a collapse: errors are known as well as that.
+pub(crate) const LEAST_STRETCH: f64 = 1.5;
+/// The same from which on there is none.
 pub(crate) const MOST_STRETCH: f64 = 3.0;
 
 // F1: two kinds of flow.

@@ -70,7 +70,7 @@ fn back_flow_is_traced_to_friction_or_to_the_wall() {
     let by_friction = back_flow(|friction, _| if friction > 0.15 { -0.05 } else { 0.3 }, 3);
     let finding = examine("Q6", &[("back-flow", &by_friction)]);
     assert_verdict(&finding, Verdict::Answered);
-    assert_says(&finding.summary, "Friction is needed");
+    assert_says(&finding.summary, "back flow needs friction");
     assert_says(&finding.summary, "need not move");
     assert!((value(&finding, "without friction") - 0.3).abs() < 1e-9);
     // Friction -2.6, of which -3.9 in the front: what is left for the rear is 1.3.
@@ -79,7 +79,7 @@ fn back_flow_is_traced_to_friction_or_to_the_wall() {
 
     let by_the_wall = back_flow(|_, tether| if tether < 1.0 { -0.05 } else { 0.1 }, 3);
     let finding = examine("Q6", &[("back-flow", &by_the_wall)]);
-    assert_says(&finding.summary, "Friction is not needed");
+    assert_says(&finding.summary, "back flow needs no friction");
     assert!(
         !finding.summary.contains("need not move"),
         "{}",
@@ -545,7 +545,7 @@ fn a_throat_that_closes_becomes_a_displacement_pump() {
     assert!((end - 7.5e-3).abs() < 2e-4, "{end}");
     assert_says(
         &finding.summary,
-        "At 1.00 a head of 0.008 instead of 0.001 takes",
+        "At 1.00 a back pressure of 0.008 instead of 0.001 takes",
     );
     assert_says(&finding.summary, "Cohesion changes");
     assert_says(&finding.summary, "at 2 of 2 places");
@@ -610,10 +610,15 @@ fn the_order_of_segments_decides_what_they_carry() {
     let (segments, waves) = sequences(5);
     let finding = examine("Q14", &[("segments", &segments), ("segments-wave", &waves)]);
     assert_verdict(&finding, Verdict::Answered);
-    assert!((value(&finding, "4 segments, head 0.000") - 0.8).abs() < 1e-2);
+    assert!((value(&finding, "4 segments, back pressure 0.000") - 0.8).abs() < 1e-2);
     // Jmax = 1; 4 * 0.1 over 3 * 0.1 * 0.8.
     assert!(
-        (value(&finding, "back flow over *J*_{max}, 4 segments, head 0.001") - 0.1).abs() < 1e-9
+        (value(
+            &finding,
+            "back flow over *J*_{max}, 4 segments, back pressure 0.001"
+        ) - 0.1)
+            .abs()
+            < 1e-9
     );
     let times = value(&finding, "efficiency of the wave over that of the segments");
     assert!((times - 4.0 / 2.4).abs() < 1e-6, "{times}");

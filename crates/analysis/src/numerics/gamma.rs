@@ -73,7 +73,7 @@ fn upper_fraction(a: f64, x: f64) -> f64 {
 }
 
 /// Probability that chi^2 with this many degrees of freedom exceeds a value; 1 without degrees of freedom.
-pub(crate) fn chi_squared_tail(chi_squared: f64, degrees_of_freedom: usize) -> f64 {
+pub fn chi_squared_tail(chi_squared: f64, degrees_of_freedom: usize) -> f64 {
     if degrees_of_freedom == 0 {
         return 1.0;
     }

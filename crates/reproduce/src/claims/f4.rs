@@ -81,11 +81,6 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>, collapsed: Option<&Collapsed>
         AMPLITUDE,
     );
     let (exponent, power) = (cell(mean), cell(power));
-    let said = |holds: Option<bool>| match holds {
-        Some(true) => "holds",
-        Some(false) => "does not hold",
-        None => "cannot be told",
-    };
     let (words, scaling) = (rates.in_words(), said(scales));
     let (half, chance) = (said(rates.hold()), cell_of(collapsed, Collapsed::chance));
     let why = PROSE.text("why", values!(half, words, scaling, chance));

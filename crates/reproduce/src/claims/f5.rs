@@ -1,7 +1,8 @@
 //! F5: the fluctuation of the flow rate across an ensemble.
 
 use peristalsis_analysis::{
-    AfterEnd, Bootstrap, Law, MomentPeak, fit_law, second_moment, second_moment_peak,
+    AfterEnd, Bootstrap, Law, MomentPeak, fit_law, jackknife_error, second_moment,
+    second_moment_peak,
 };
 use peristalsis_run::THRESHOLDS;
 
@@ -70,7 +71,7 @@ impl Moment {
             rest.swap_remove(place);
             second_moment(&rest, AfterEnd::Leave).map_or(f64::NAN, |rest| integral(&times, &rest))
         });
-        let error = jackknife(&without.collect::<Vec<_>>());
+        let error = jackknife_error(&without.collect::<Vec<_>>());
         let had = |row: &&Row<'_>| row.transition_at(threshold).observed().is_some();
         let variances = moments.iter().map(|moment| moment.variance);
         Some(Self {
@@ -94,10 +95,9 @@ impl Moment {
     /// one another to be told apart by thresholds 0.1 apart.
     fn is_saturated(&self) -> Option<bool> {
         let (peak, full) = (self.height(), SATURATED * self.bound);
-        let reach = AGREES_WITHIN * peak.error;
         match self.bound >= LEAST_BOUND {
             true if peak.value >= full => Some(true),
-            true if peak.value + reach < full => Some(false),
+            true if peak.is_below(full) => Some(false),
             _ => None,
         }
     }
@@ -108,15 +108,6 @@ fn passages(row: &Row<'_>) -> Vec<f64> {
     let passages = THRESHOLDS.iter();
     let passages = passages.filter_map(|threshold| row.transition_at(*threshold).observed());
     passages.map(|time| time * row.strain_rate()).collect()
-}
-
-/// Standard error from estimates that leave out one of n runs each, [(n - 1)/n sum (t_i - mean)^2]^(1/2).
-/// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
-fn jackknife(estimates: &[f64]) -> f64 {
-    let number = estimates.len().max(1) as f64;
-    let mean = estimates.iter().sum::<f64>() / number;
-    let squares: f64 = estimates.iter().map(|one| (one - mean).powi(2)).sum();
-    (squares * (number - 1.0) / number).sqrt()
 }
 
 fn integral(times: &[f64], moments: &[peristalsis_analysis::SecondMoment]) -> f64 {
@@ -187,7 +178,7 @@ impl Moments {
     /// Whether the moment integrated over time, which nothing bounds, grows towards w_c.
     fn grows_without_bound(&self) -> Option<bool> {
         let exponent = self.exponent(WINDOW, |moment| moment.integral)?;
-        Some(exponent.value > AGREES_WITHIN * exponent.error)
+        Some(exponent.is_above(0.0))
     }
 
     /// Whether the peak still grows next to w_c, and has room to; not, where it is as high as two flows allow.
@@ -196,7 +187,7 @@ impl Moments {
             return Some(false);
         }
         let exponent = self.exponent(STRAIGHT, Moment::height)?;
-        (exponent.value > AGREES_WITHIN * exponent.error).then_some(true)
+        exponent.is_above(0.0).then_some(true)
     }
 
     fn row(wall: &str, shown: &Shown<Self>) -> Option<Vec<String>> {
@@ -233,7 +224,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             draft.quantity("integral", values!(wall, rate), found);
         }
     }
-    let judgement = Judgement::of(walls.iter().map(part).collect(), &needed);
+    let collapses: Vec<Option<Collapsed>> = walls.iter().map(scaling).collect();
+    let parts = walls.iter().zip(&collapses);
+    let parts = parts.map(|(one, collapsed)| part(one, collapsed.as_ref()));
+    let judgement = Judgement::of(parts.collect(), &needed);
     if rows.is_empty() {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
@@ -257,17 +251,19 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let wall = &one.name;
         draft.chart("second-moment-in-time", &[], in_time(wall, &shown.found))?;
     }
-    for (one, found) in walls.iter().filter_map(|one| Some((one, scaling(one)?))) {
-        let of = format!("peak of the second moment, wall {}", one.name);
-        draft
-            .finding
-            .quantities
-            .extend(found.quantities(&of, ["*a_{J}*", "*b_{J}*"]));
+    let collapses = walls.iter().zip(collapses);
+    let collapses = collapses.filter_map(|(one, found)| Some((one.name.clone(), found?)));
+    let collapses: Vec<(String, Collapsed)> = collapses.collect();
+    for (wall, found) in &collapses {
+        let of = format!("peak of the second moment, wall {wall}");
+        let exponents = found.quantities(&of, ["*a_{J}*", "*b_{J}*"]);
+        draft.finding.quantities.extend(exponents);
     }
+    distrust(&mut draft, &collapses);
     Ok(draft.judged(judgement, &summary))
 }
 
-fn part(one: &OnWall<Moments>) -> Part {
+fn part(one: &OnWall<Moments>, collapsed: Option<&Collapsed>) -> Part {
     let rates = one.rates(Moments::diverges);
     let integrals = one.rates(Moments::grows_without_bound);
     let nearest = one
@@ -285,8 +281,17 @@ fn part(one: &OnWall<Moments>) -> Part {
     let highest = number(highest, 2);
     let words = PROSE.text("number", values!(peak, highest));
     let (rates_of_peak, grows) = (rates.in_words(), integrals.count());
-    let why = PROSE.text("why", values!(rates = rates_of_peak, grows, integral));
-    one.part(all_hold(&[rates.hold(), integrals.hold()]), words, why)
+    let scaling = said(collapsed.and_then(Collapsed::holds));
+    let why = PROSE.text(
+        "why",
+        values!(rates = rates_of_peak, grows, integral, scaling),
+    );
+    let holds = all_hold(&[
+        rates.hold(),
+        integrals.hold(),
+        collapsed.and_then(Collapsed::holds),
+    ]);
+    one.part(holds, words, why)
 }
 
 /// Power of the number of waves with which the peak of the moment of J/Jmax goes, over the widths that most runs jam at.

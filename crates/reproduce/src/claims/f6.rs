@@ -92,7 +92,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if rows.is_empty() {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
-    let summary = PROSE.text("summary", &[]);
+    let summary = PROSE.text("summary", values!(least = LEAST_JUMP, clear = CLEAR));
     draft.table("jumps", &[], rows);
     let periods = walls.iter().map(|one| one.periods).fold(0.0, f64::max);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));

@@ -100,10 +100,7 @@ struct Judged {
 impl Judged {
     fn of(densities: &[Density<'_>]) -> Self {
         let flows: Option<Vec<Uncertain>> = densities.iter().map(|density| density.flow).collect();
-        let falls = |pair: &[Uncertain]| {
-            let fall = distance(&pair[0], &pair[1]);
-            fall.value > AGREES_WITHIN * fall.error
-        };
+        let falls = |pair: &[Uncertain]| distance(&pair[0], &pair[1]).is_above(0.0);
         let critical = densities
             .iter()
             .filter_map(|density| Some((density.fraction, density.critical?)));

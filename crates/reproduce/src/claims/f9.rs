@@ -253,14 +253,14 @@ impl Dense {
     }
 
     /// Difference of the flows.
-    fn apart(&self) -> f64 {
-        self.flows[1].value - self.flows[0].value
+    fn apart(&self) -> Uncertain {
+        self.flows[1] - self.flows[0]
     }
 
     /// Whether the starts end in two flows.
     fn is_bistable(&self) -> bool {
-        let error = self.flows[0].error.hypot(self.flows[1].error);
-        self.apart() > LEAST_FALL && self.apart() > CLEAR * error
+        let apart = self.apart();
+        apart.value > LEAST_FALL && apart.deviations_from(0.0) > CLEAR
     }
 
     fn row(&self) -> Vec<String> {
@@ -281,7 +281,7 @@ fn of_dense_grains(draft: &mut Draft, rows: Vec<Row<'_>>) {
         .collect();
     let clearest = found
         .iter()
-        .max_by(|one, other| one.apart().total_cmp(&other.apart()));
+        .max_by(|one, other| one.apart().value.total_cmp(&other.apart().value));
     let Some(clearest) = clearest else {
         return;
     };

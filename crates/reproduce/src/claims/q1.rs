@@ -139,8 +139,8 @@ fn turning(lines: &[&Line]) -> String {
     let (Some(slowest), Some(highest)) = (jumps().next(), highest) else {
         return PROSE.text("cannot turn", &[]);
     };
-    let fall = difference(&highest.critical, &slowest.critical);
-    if fall.value > CLEAR_TURN * fall.error {
+    let fall = highest.critical - slowest.critical;
+    if fall.deviations_from(0.0) > CLEAR_TURN {
         let (rate, fall) = (highest.strain_rate, number(fall.value, 3));
         PROSE.text("turns", values!(rate, fall))
     } else {

@@ -72,7 +72,7 @@ impl Outcome {
     }
 
     fn shift(&self, usual: &Self) -> Uncertain {
-        difference(&self.critical, &usual.critical)
+        self.critical - usual.critical
     }
 
     fn row(&self, lattice: &str, usual: &Self) -> Vec<String> {

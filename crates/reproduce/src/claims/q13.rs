@@ -129,10 +129,10 @@ impl Case {
         };
         let beside = |place| {
             let own = self.places().find(|one| same(one, place))?;
-            Some((place, difference(&place.flow, &own.flow)))
+            Some((place, place.flow - own.flow))
         };
         let pairs: Vec<(&Place, Uncertain)> = other.places().filter_map(beside).collect();
-        let clear = |change: &Uncertain| change.deviations_from(0.0).abs() > AGREES_WITHIN;
+        let clear = |change: &Uncertain| !change.interval_95.contains(0.0);
         let by_size = |one: &&(&Place, Uncertain), other: &&(&Place, Uncertain)| {
             one.1.value.abs().total_cmp(&other.1.value.abs())
         };
@@ -296,8 +296,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .map(|place| (-1e3 * place.body_force, place.flow));
         joined(&format!("occlusion {}", number(*occlusion, 2)), points)
     });
-    let against_head =
-        ChartPanel::new("head −*g*, 10^{−3} *d* *t*^{−2}", &flow).with_all(numbered(series));
+    let against_head = ChartPanel::new("back pressure −*g*, 10^{−3} *d* *t*^{−2}", &flow)
+        .with_all(numbered(series));
     draft.chart("closure", &[], grid(2, [against_occlusion, against_head]))?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q13_NEEDED))
 }
@@ -330,7 +330,7 @@ fn loss(occlusion: &str, places: &[&Place]) -> String {
             occlusion,
             least = number(-smallest.body_force, 3),
             head = number(-largest.body_force, 3),
-            loss = difference(&smallest.flow, &largest.flow)
+            loss = smallest.flow - largest.flow
         ),
     )
 }

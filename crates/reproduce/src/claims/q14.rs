@@ -181,7 +181,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (Some(along), [worst, .., best]) = (along, &same[..]) else {
         return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
     };
-    let mut draft = Draft::of(PROSE);
+    let mut draft = Draft::of(PROSE).varying("back pressure");
     draft.weakness("pressed", values!(duty = number(*duty, 2), overlap, often));
     for drive in [along, wave] {
         let name = &drive.name;
@@ -267,8 +267,8 @@ fn orders(drives: &[&Drive], wave: &Drive) -> ChartPanel {
             known.filter_map(|(number, drive)| Some((place(number), flow(drive)?))),
         )
     };
-    let free = series("no head", &Drive::flow);
-    let loaded = series("head", &|drive| drive.loaded().map(|it| it.flow));
+    let free = series("no back pressure", &Drive::flow);
+    let loaded = series("back pressure", &|drive| drive.loaded().map(|it| it.flow));
     let title = format!("order: {}", names.join(", "));
     let panel = ChartPanel::new(&title, &label(Axis::FlowRateRatio));
     let panel = panel.with_all(numbered([free, loaded]));

@@ -1,6 +1,6 @@
 //! Q15: whether a silo discharges as Beverloo's law says.
 
-use peristalsis_analysis::{LineFit, fit_line_to_scatter, power_exponent};
+use peristalsis_analysis::{LineFit, chi_squared_tail, fit_line_to_scatter, power_exponent};
 
 use super::prelude::*;
 
@@ -247,13 +247,11 @@ fn fillings(heads: &[Point], bore: f64) -> Option<String> {
         .map(|rate| rate.deviations_from(mean).powi(2))
         .sum();
     let free = high.len().checked_sub(1).filter(|free| *free > 0)?;
-    // Mean and standard deviation of chi^2 are its degrees of freedom and the root of twice them.
-    let most = free as f64 + AGREES_WITHIN * (2.0 * free as f64).sqrt();
     let off_mean = high.iter().map(|rate| (rate.value - mean).abs());
     let farthest = off_mean.fold(0.0, f64::max);
-    let less = difference(&full.rate, &low.rate);
+    let less = full.rate - low.rate;
     let part = 100.0 / full.rate.value;
-    let outcome = match chi_squared <= most {
+    let outcome = match chi_squared_tail(chi_squared, free) > BY_CHANCE {
         true => PROSE.text("agree", &[]),
         false => PROSE.text("differ", &[]),
     };
@@ -275,14 +273,17 @@ fn fillings(heads: &[Point], bore: f64) -> Option<String> {
 
 /// What happens where the silo no longer takes all that is fed.
 fn change(feeds: &[Point]) -> Option<String> {
-    let takes = |point: &&Point| point.rate.deviations_from(point.at).abs() <= AGREES_WITHIN;
+    let takes = |point: &&Point| point.rate.interval_95.contains(point.at);
     let dilute = feeds.iter().take_while(takes).last()?;
     let dense = feeds.iter().find(|point| point.at > dilute.at)?;
     let [before, after] = [dilute, dense].map(|point| point.rate.to_string());
     let [thin, thick] = [dilute, dense].map(|point| number(point.hold_up.value, 0));
-    let fall = difference(&dilute.rate, &dense.rate);
-    let drops = fall.value > AGREES_WITHIN * fall.error;
-    let drop = if drops { "a drop" } else { "no drop" };
+    let fall = dilute.rate - dense.rate;
+    let drop = if fall.is_above(0.0) {
+        "a drop"
+    } else {
+        "no drop"
+    };
     Some(PROSE.text(
         "change",
         values!(

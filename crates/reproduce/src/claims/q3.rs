@@ -180,7 +180,7 @@ fn span<'a>(of: impl Iterator<Item = &'a Critical>) -> Option<Uncertain> {
     let [least, .., largest] = &*fractions else {
         return None;
     };
-    Some(difference(largest, least))
+    Some(*largest - *least)
 }
 
 fn against(varied: &Varied, found: &[Critical]) -> ChartPanel {

@@ -68,7 +68,7 @@ impl Sampled<'_> {
 
     /// Whether the flow is against the wave.
     fn flows_back(&self) -> bool {
-        self.flow.value < -SIGNED_BY * self.flow.error.max(0.0)
+        self.flow.is_below(0.0)
     }
 
     fn row(&self) -> Vec<String> {
@@ -237,7 +237,7 @@ fn of_wall(preset: &Sampled<'_>, pinned: Option<&Sampled<'_>>) -> String {
         return String::new();
     };
     let sentence = if preset.flows_back() && pinned.flows_back() {
-        let change = difference(&pinned.flow, &preset.flow);
+        let change = pinned.flow - preset.flow;
         PROSE.text("wall need not move", values!(pinned = pinned.flow, change))
     } else {
         PROSE.text("wall pinned", values!(pinned = pinned.flow))

@@ -109,10 +109,8 @@ impl<'a> Corner<'a> {
     }
 
     fn flows_back(&self) -> bool {
-        self.flow.lowest().is_some_and(|point| {
-            let by = SIGNED_BY * point.flow.error.max(0.0);
-            point.flow.value < -LEAST_BACK_FLOW.max(by)
-        })
+        let lowest = self.flow.lowest();
+        lowest.is_some_and(|point| point.flow.is_below(-LEAST_BACK_FLOW))
     }
 
     fn is_fast(&self) -> bool {

@@ -54,7 +54,7 @@ impl<'a> Scene<'a> {
     /// Whether the flow is as the source's picture suggests: along the wave at the largest force and without friction,
     /// against it at the smaller ones; `None` where the error is too large to say.
     fn holds(&self, largest: f64) -> Option<bool> {
-        let clear = self.flow.value.abs() > CLEAR * self.flow.error;
+        let clear = self.flow.deviations_from(0.0).abs() > CLEAR;
         clear.then_some((self.flow.value > 0.0) == (self.frictionless || self.force == largest))
     }
 

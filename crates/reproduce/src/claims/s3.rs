@@ -53,7 +53,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.table("rises", &[], lines.iter().map(|line| cells(&rows, line)));
     let escaped = number(100.0 * MOST_ESCAPED, 0);
-    draft.paragraph("method", values!(least = LEAST_JUMP_AGAINST_FORCE, escaped));
+    draft.paragraph(
+        "method",
+        values!(least = LEAST_JUMP_AGAINST_FORCE, clear = CLEAR, escaped),
+    );
     draft.chart("branches", &[], branches(&lines, &tight))?;
     let panels = peaks(&rows, &tight);
     if !panels.is_empty() {

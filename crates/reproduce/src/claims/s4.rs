@@ -46,14 +46,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     let statistics = together(tight.iter().copied());
     let mut draft = draft(PROSE);
-    for line in &tight {
-        if let Some(lowest) = line.flow.lowest() {
-            let (rate, force) = (line.strain_rate, lowest.control);
-            draft.quantity("lowest", values!(rate, force), lowest.flow);
-        }
+    let lowest = |line: &&ForceLine<'_>| {
+        let point = line.flow.lowest()?;
+        Some((line.strain_rate, point.control, point.flow))
+    };
+    let mut lowest: Vec<_> = tight.iter().filter_map(lowest).collect();
+    lowest.sort_by(|one, other| one.2.value.total_cmp(&other.2.value));
+    for (rate, force, flow) in lowest {
+        draft.quantity("lowest", values!(rate, force), flow);
     }
     draft.table("flows", &[], tight.iter().flat_map(|line| cells(line)));
-    draft.paragraph("method", values!(least = LEAST_BACK_FLOW));
+    draft.paragraph("method", values!(least = LEAST_BACK_FLOW, clear = CLEAR));
     // Those whose flow is negative at larger forces only, and not at the smallest.
     let only_beyond = |line: &&ForceLine<'_>| {
         negative(line)
@@ -95,7 +98,14 @@ fn summary(backward: &[&ForceLine<'_>], forward: &[&ForceLine<'_>]) -> String {
     let elsewhere = if forward.is_empty() {
         String::new()
     } else {
-        format!(", and nowhere at *ε̇* = {}", rates(forward))
+        PROSE.text(
+            "elsewhere",
+            values!(
+                least = LEAST_BACK_FLOW,
+                clear = CLEAR,
+                rates = rates(forward)
+            ),
+        )
     };
     PROSE.text("summary", values!(rates = words.join(", "), elsewhere))
 }

@@ -33,8 +33,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let pairs: Vec<Pair<'_, '_>> = tight.iter().map(|line| (*line, beside(line))).collect();
     let flows_back = tight.iter().any(|line| !negative(line).is_empty());
     let points = || tight.iter().flat_map(|line| line.flow.points());
-    let never = points()
-        .all(|point| point.flow.value + LEAST_BACK_FLOW > NO_BACK_FLOW_BY * point.flow.error);
+    let never = points().all(|point| point.flow.is_above(-LEAST_BACK_FLOW));
     let verdict = match (flows_back, never) {
         (true, _) => Verdict::Differs,
         (false, true) => Verdict::Reproduced,
@@ -44,7 +43,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut draft = draft(PROSE);
     let compared = pairs.iter().flat_map(compared);
     for (rate, without, with) in compared.filter(|(.., with)| with.flow.value < 0.0) {
-        let (force, more) = (without.control, difference(&without.flow, &with.flow));
+        let (force, more) = (without.control, without.flow - with.flow);
         draft.quantity("difference", values!(rate, force), more);
     }
     draft.table("flows", &[], pairs.iter().flat_map(cells));

@@ -243,13 +243,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         }
     }
     draft.table("matched", &[], matched.iter().map(Matched::row));
-    let mut table = PROSE.table("flows", &[], flows.iter().flatten().map(Flow::row));
+    let mut table = PROSE.table(
+        "flows",
+        values!(unjammed = UNJAMMED),
+        flows.iter().flatten().map(Flow::row),
+    );
     let symbols = NUMBERS.iter().map(|(symbol, _)| (*symbol).to_owned());
     table.head.extend(symbols);
     draft.finding.tables.push(table);
     draft.paragraph("tubes", &[]);
     let (apart, within) = (100.0 * MATCHED, 100.0 * WITHIN_A_MODEL);
-    draft.paragraph("method", values!(apart, within));
+    draft.paragraph("method", values!(apart, within, unjammed = UNJAMMED));
     if !matched.is_empty() {
         draft.chart("matched", &[], throats(&matched))?;
     }

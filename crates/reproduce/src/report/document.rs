@@ -120,8 +120,12 @@ fn section(examination: &Examination, file: Option<&str>, figures: &str) -> Stri
         Some(failure) => format!("It could not be examined: {failure}"),
         None => finding.summary.clone(),
     };
-    let verdict = finding.verdict.name();
-    add(&format!("**{verdict}** – {}", markdown(&summary)));
+    let (verdict, needed) = (finding.verdict.name(), finding.needed);
+    let takes = match needed == Statistics::FOR_A_VERDICT {
+        true => String::new(),
+        false => format!(" ({needed})"),
+    };
+    add(&format!("**{verdict}**{takes} – {}", markdown(&summary)));
     if let (Some(file), Some(figure)) = (file, finding.figures.first()) {
         // Its first sentence, which stands for the picture where none is seen; a bracket would end it.
         let caption = figure

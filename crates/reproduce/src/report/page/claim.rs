@@ -77,7 +77,7 @@ fn statistics(examination: &Examination) -> Markup {
                 (counted(found.replicates, "replicate")) ", " (counted(found.runs, "run")) " in all: "
                 @if examination.is_sufficient() { "enough for a verdict." }
                 @else {
-                    "too few for a verdict, which takes " (needed.strain_rates) " × " (needed.widths) " × " (needed.replicates) "."
+                    "too few for a verdict, which takes " (needed) "."
                 }
             }
         }
