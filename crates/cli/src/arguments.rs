@@ -78,8 +78,8 @@ pub(crate) struct ConfigurationArguments {
     /// Sets a key, such as drive.width=2.7, whatever preset and file say; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// Length of the run in periods of the wave (run.periods); where a schedule changes the rate, of drive.strain_rate.
-    /// `run --resume` takes the new length of the whole run, to the same bits as one run of that length.
+    /// Length of the run in periods of drive.strain_rate (run.periods), rounded up to whole samples. `run --resume` takes the
+    /// new length of the whole run, to the same bits as one run of that length.
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) periods: Option<f64>,
     /// Length of the run in time [t] (run.duration).
@@ -185,7 +185,7 @@ pub(crate) struct TrajectoryArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Prints an address on this machine that only you know; open it in a browser. From another machine: `ssh -L PORT:localhost:PORT`. Ctrl-C ends."
+    after_help = "Prints an address on this machine that only you know; open it in a browser. From another machine: `ssh -L 8000:localhost:8000 HOST`, and there `peristalsis view --port 8000`. Ctrl-C ends."
 )]
 pub(crate) struct ViewArguments {
     /// Folder of a run (its trajectory.gsd is played, if it holds one), trajectory (.gsd), configuration in TOML, or name

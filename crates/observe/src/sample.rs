@@ -56,8 +56,8 @@ pub struct Sample {
     pub wall_axial_force: f64,
     /// Mean power that wall or drive put in.
     pub wall_power: f64,
-    /// Mean power of the body force on the grains inside: negative where they are pumped against it. Of the body force across
-    /// the tube the part on escaped grains is taken from their velocities at the end.
+    /// Mean power of the body force on the grains inside: negative where they are pumped against it. The work of
+    /// the body force across the tube on escaped grains is estimated from their velocities at the end of the interval.
     pub body_power: f64,
     /// Mean power lost in contacts, drag and dashpots.
     pub dissipated_power: f64,

@@ -41,7 +41,7 @@ pub struct Cohesion {
     pub pull_off: PullOff,
 }
 
-/// Where the neck of a JKR contact breaks that is drawn apart: how far it is followed.
+/// The gap at which the neck of a JKR contact breaks when the spheres are drawn apart.
 ///
 /// The pull grows with the gap up to the pull-off force and then falls. Under a fixed load the neck breaks there; between
 /// fixed grips it is drawn out until it has no equilibrium left. Maugis & Barquins, J. Phys. D 11, 1989 (1978).

@@ -86,7 +86,8 @@ struct TubeKeys {
     /// Occlusion, 1 - (clear throat)/(clear bore): towards 0 the tube is straight, and moves nothing; 1 is closed.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 1))]
     occlusion: f64,
-    /// Volume of the grains over that of the straight tube.
+    /// Volume of the grains over that of the clear bore of the straight tube. grains.volume_fraction counts the tube up to the
+    /// centres of the wall spheres, and is smaller.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 0.7))]
     fill: f64,
     /// Angle at which the wave climbs: 0 is a tube that lies, 90 one that pumps upward, -90 one that pumps downward.
