@@ -7,6 +7,7 @@ use peristalsis_configuration::{Configuration, PRESETS, SourceFile, Sources, pre
 use peristalsis_engine::EngineError;
 use peristalsis_reproduce::design::is_design;
 use peristalsis_run::RunError;
+use peristalsis_study::Specification;
 
 use crate::arguments::ConfigurationArguments;
 use crate::failure::Failure;
@@ -14,7 +15,7 @@ use crate::failure::Failure;
 /// The configuration that the arguments describe.
 pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Configuration, Failure> {
     if arguments.file.is_none() && arguments.preset.is_none() && arguments.overrides.is_empty() {
-        let reason = "nothing to run: give a FILE or a --preset";
+        let reason = "no configuration: give a FILE or a --preset";
         return Err(Failure::usage(reason, known_presets()));
     }
     let file = name_and_text(arguments)?;
@@ -78,6 +79,22 @@ fn is_a_study(text: &str) -> bool {
         ["[base]", "[[axes]]"].contains(&line.split('#').next().unwrap_or_default().trim())
     };
     text.lines().any(begins)
+}
+
+/// The study that a file describes.
+pub(crate) fn study(path: &Path) -> Result<Specification, Failure> {
+    let of_one_run = |text: &str| {
+        let tables = ["[drive]", "[tube]", "[grains]", "[run]"];
+        !is_a_study(text) && text.lines().any(|line| tables.contains(&line.trim()))
+    };
+    if std::fs::read_to_string(path).is_ok_and(|text| of_one_run(&text)) {
+        let name = path.display();
+        return Err(Failure::usage(
+            format!("{name} is the configuration of one run, not a study"),
+            format!("use: peristalsis run {name}"),
+        ));
+    }
+    Ok(Specification::read(path)?)
 }
 
 /// Whether a path is `-`, which stands for standard input.

@@ -300,7 +300,7 @@ fn plans_take_whole_steps_within_the_run() {
     };
     assert!(refused("0", ":", &configuration).contains("step"));
     assert!(refused("1e-9", ":", &configuration).contains("step of 0.05"));
-    assert!(refused("0.1", "5:6", &configuration).contains("window"));
+    assert!(refused("0.1", "5:6", &configuration).contains("no frame lies there"));
     assert!(refused("0.1", "3:2", &configuration).contains("window"));
     let settings = "drive.strain_rate=0 run.duration=50";
     let fixed = common::configuration("frictionless", settings);

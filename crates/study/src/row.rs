@@ -136,12 +136,28 @@ impl Row {
                 self.identity
             ));
         }
-        let value = |name: &str| Some((name.to_owned(), *self.table.reals(name).ok()?.first()?));
-        let measured = ["time", "periods", "flow_rate", "flow_rate_ratio"];
-        let mut measured = measured.into_iter().filter_map(value);
-        // An empty cell reads as NaN: a quantity that the run does not have. Each has a time.
+        let value = |name: &str| self.table.reals(name).map_or(f64::NAN, |found| found[0]);
+        // An empty cell reads as NaN: a quantity that the run does not have, such as J/Jmax of a static wave.
+        let moves = value("strain_rate") != 0.0;
+        let is_wrong = |name: &str, found: f64| match name {
+            "time" => !(found > 0.0 && found.is_finite()),
+            "transition_time" => found < 0.0 || found > value("time"),
+            "flow_rate" => !found.is_finite(),
+            "flow_rate_ratio" => found.is_infinite() || moves && found.is_nan(),
+            _ => found < 0.0 || found.is_infinite(),
+        };
+        let measured = [
+            "time",
+            "periods",
+            "transition_time",
+            "flow_rate",
+            "flow_rate_ratio",
+            "largest_overlap",
+        ];
         let (name, found) = measured
-            .find(|(name, found)| found.is_infinite() || name == "time" && found.is_nan())?;
+            .map(|name| (name, value(name)))
+            .into_iter()
+            .find(|(name, found)| is_wrong(name, *found))?;
         Some(format!("the run {} has the {name} {found}", self.identity))
     }
 

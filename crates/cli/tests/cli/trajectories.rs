@@ -55,7 +55,7 @@ fn what_cannot_be_is_refused_before_anything_is_made() {
         ("--trajectory gsd --trajectory-window 2:1", "reversed"),
         (
             "--trajectory gsd --trajectory-window 7:9",
-            "none of its frames",
+            "no frame lies there",
         ),
     ] {
         place.refuses(&format!("run SMALL {options}"), &[says]);

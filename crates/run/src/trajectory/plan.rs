@@ -16,9 +16,8 @@ const FRAMES_OF_A_STATIC_RUN: u64 = 100;
 const MOST_SPHERES: u64 = 20_000_000;
 /// Most frames of a trajectory.
 const MOST_FRAMES: u64 = 10_000_000;
-/// The explanation of a window, for a window that holds no frame.
-pub(super) const WINDOW_HELP: &str =
-    "the window is FROM:TO in periods of the run, or in time with a t: 20:25, 5t:10t";
+/// How times are given, for a time or a window that holds no frame.
+pub(super) const WINDOW_HELP: &str = "times are in periods of the run, or in time with a t: 20, 400t; a window is FROM:TO: 20:25, 5t:10t";
 
 /// A length of time in a run, or a time in it, as a person gives it: `0.1` in periods, `2.5t` in units of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -165,10 +164,12 @@ impl TrajectoryPlan {
         // A trajectory that begins in the middle of a run keeps to the frames that it would have had from the start.
         let first = from + now.saturating_sub(from).div_ceil(interval) * interval;
         if first > to {
+            let periods = |step| time(step) * configuration.drive.strain_rate;
             let reason = format!(
-                "none of its frames lies in the window: the run goes from t = {} to t = {}, the window begins at t = {}",
+                "no frame lies there: the run goes from t = {} to t = {} ({} periods), and what was asked for begins at t = {}",
                 time(now),
                 time(end),
+                periods(end),
                 time(from)
             );
             let help = WINDOW_HELP;

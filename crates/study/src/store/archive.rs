@@ -65,7 +65,7 @@ impl Store {
             .map_err(StudyError::io("make a folder in", self.path()))?;
         let mut archive = tar::Archive::new(io::BufReader::new(file));
         let mut identities = BTreeSet::new();
-        let broken = |error: io::Error| refused(error.to_string());
+        let broken = |_: io::Error| refused("it is no tar archive, or damaged".to_owned());
         for entry in archive.entries().map_err(broken)? {
             let mut entry = entry.map_err(broken)?;
             let name = entry.path().map_err(broken)?.into_owned();

@@ -3,11 +3,12 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use peristalsis_study::{Identity, Specification, State, Store, Verification};
+use peristalsis_study::{Identity, State, Store, Verification};
 
 use super::{ExportArguments, ImportArguments, PackArguments, RetryArguments, StoreArguments};
 use crate::commands::{code_of, counted, print, say, say_if_replaced};
 use crate::failure::Failure;
+use crate::sources;
 
 pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
@@ -115,7 +116,7 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
 pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
     let path = &arguments.store.store;
     let store = match &arguments.study {
-        Some(file) => Store::create(path, &Specification::read(file)?)?,
+        Some(file) => Store::create(path, &sources::study(file)?)?,
         None => Store::open(path)?,
     };
     let mut is_whole = true;

@@ -10,9 +10,10 @@ use super::{PlanArguments, store_path};
 use crate::commands::{counted, print_report};
 use crate::failure::Failure;
 use crate::progress::seconds;
+use crate::sources;
 
 pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
-    let study = Specification::read(&arguments.file)?;
+    let study = sources::study(&arguments.file)?;
     let plan = study.plan();
     let estimate = study_estimate(&study, plan)?;
     let path = store_path(&arguments.store, &study);

@@ -2,18 +2,19 @@
 
 use std::process::ExitCode;
 
-use peristalsis_study::{Ending, Specification, State, Store, work_on};
+use peristalsis_study::{Ending, State, Store, work_on};
 
 use super::progress::StudyDisplay;
 use super::status::print_status;
 use super::{RunArguments, store_path};
 use crate::commands::{counted, tell};
 use crate::failure::Failure;
+use crate::sources;
 use crate::stop::Stop;
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
-    let study = Specification::read(&arguments.file)?;
+    let study = sources::study(&arguments.file)?;
     let path = store_path(&arguments.store, &study);
     let store = Store::create(&path, &study)?;
     let effort = arguments.work.effort(arguments.checkpoint_every);

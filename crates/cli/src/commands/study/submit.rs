@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
-use peristalsis_study::{Specification, Store};
+use peristalsis_study::Store;
 
 use super::{SubmitArguments, store_path};
 use crate::commands::{counted, print, refuse_loss, say_if_replaced};
 use crate::failure::Failure;
+use crate::sources;
 
 /// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
 const WARNING: Duration = Duration::from_secs(60);
@@ -32,7 +33,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.out {
         refuse_loss(path, [arguments.file.clone()])?;
     }
-    let study = Specification::read(&arguments.file)?;
+    let study = sources::study(&arguments.file)?;
     let store = store_path(&arguments.store, &study);
     // So that a study that cannot run is refused here, and no two tasks make it.
     drop(Store::create(&store, &study)?);

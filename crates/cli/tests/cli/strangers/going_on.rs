@@ -39,7 +39,7 @@ fn a_wave_whose_rate_changes_says_which_periods_its_run_counts() {
     place.refuses("run --resume r --periods 5", &["has done 6 periods"]);
     let help = place.does("run --help").stdout;
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(help.contains("where a schedule changes the rate, of drive.strain_rate"));
+    assert!(help.contains("in periods of drive.strain_rate"));
     // A wave of one rate has one kind of period.
     let constant = place.does("run SMALL --out constant");
     assert!(!constant.stderr.contains("run.periods counts"));
