@@ -126,7 +126,7 @@ impl Configuration {
             "drive.body_force" => self.drive.body_force != 0.0,
             "tube.arrangement" => self.tube.arrangement != Arrangement::default(),
             "tube.arrangement_seed" => self.tube.arrangement.is_drawn(),
-            path if RINGS.contains(&path) => self.tube.arrangement != Arrangement::Smooth,
+            path if RINGS.contains(&path) => self.tube.arrangement.has_spheres(),
             "initial.axial_velocity" => self.initial.axial_velocity.to_bits() != natural.to_bits(),
             "initial.temperature" => self.initial.temperature != 0.0,
             path => !absent.contains(&path),

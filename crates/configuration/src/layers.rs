@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use peristalsis_physics::contact::{Elasticity, Normal, NormalLaw};
-use peristalsis_physics::wall::{ElasticNetwork, SegmentDrive};
+use peristalsis_physics::wall::{Arrangement, ElasticNetwork, SegmentDrive};
 
 use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
@@ -13,13 +13,14 @@ use crate::materials::{self, MATERIAL};
 use crate::schema::{self, Choice};
 use crate::source::SourceFile;
 use crate::units;
+use crate::word;
 
 /// A key whose value decides which other keys have a meaning.
 #[derive(Default)]
 struct Switch {
     key: String,
     /// Its value where it is not given.
-    default: Option<&'static str>,
+    default: Option<String>,
     /// Keys that belong to some of its values, with these values.
     owned: BTreeMap<String, Vec<String>>,
     /// Keys that are dropped whenever a higher layer changes the switch.
@@ -37,18 +38,18 @@ impl Switch {
     }
 
     /// A switch that has a value where it is not given.
-    fn by_default(key: &str, default: &'static str) -> Self {
+    fn by_default(key: &str, default: impl Into<String>) -> Self {
         Self {
-            default: Some(default),
+            default: Some(default.into()),
             ..Self::new(key, &[])
         }
     }
 
     /// Its value in a table.
-    fn chosen<'a>(&self, table: &'a Table) -> Option<&'a str> {
+    fn chosen<'a>(&'a self, table: &'a Table) -> Option<&'a str> {
         match document::entry(table, &self.key) {
             Some(_) => document::text(table, &self.key),
-            None => self.default,
+            None => self.default.as_deref(),
         }
     }
 
@@ -73,18 +74,19 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
     let mut schedule = Switch::new("drive.schedule", &["drive.ramp_periods"]);
     schedule.owns("ramp", "drive.ramp_periods");
     switches.push(schedule);
-    let mut arrangement = Switch::by_default("tube.arrangement", "staggered");
+    let mut arrangement = Switch::by_default("tube.arrangement", word(Arrangement::default()));
     arrangement.reset = &["tube.arrangement_seed"];
-    for drawn in ["random", "disordered"] {
-        arrangement.owns(drawn, "tube.arrangement_seed");
+    for one in Arrangement::ALL {
+        let name = word(one);
+        if one.is_drawn() {
+            arrangement.owns(&name, "tube.arrangement_seed");
+        }
+        if one.has_spheres() {
+            RINGS.map(|key| arrangement.owns(&name, key));
+        }
     }
     for key in ["tube.file", "tube.angles", "tube.places"] {
-        arrangement.owns("file", key);
-    }
-    for key in RINGS {
-        for of_spheres in ["staggered", "aligned", "random", "disordered", "file"] {
-            arrangement.owns(of_spheres, key);
-        }
+        arrangement.owns(&word(Arrangement::File), key);
     }
     switches.push(arrangement);
     let mut sizes = Switch::by_default("grains.sizes", "uniform");

@@ -9,9 +9,12 @@ use crate::bodies::Bodies;
 use crate::error::EngineError;
 use crate::fast::threads::Threads;
 use crate::neighbours::{Neighbours, PairRule, periodic};
-use crate::snapshot::Remembered;
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
+
+/// Histories of contacts between moving spheres, (sphere i, sphere j, history), i < j, and of contacts with a prescribed wall,
+/// (grain, wall sphere, history), in order of the grains.
+pub type Remembered<H> = [Vec<(u32, u32, H)>; 2];
 
 /// Histories of contacts, between moving spheres and with a prescribed wall.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 //! chosen once per [`crate::Simulation::advance`].
 
 use glam::DVec3;
-use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
+use peristalsis_physics::contact::{ContactLaw, NormalLaw, TangentialLaw};
 
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
@@ -115,8 +115,7 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
 ) {
     let grains = bodies.grains;
     for i in 0..bodies.number() {
-        let (centre, velocity, diameter) =
-            (bodies.position[i], bodies.velocity[i], bodies.diameter[i]);
+        let (centre, diameter) = (bodies.position[i], bodies.diameter[i]);
         let mut force = bodies.acceleration[i];
         let (partners, histories) = pairs.row(i);
         for (&partner, history) in partners.iter().zip(histories) {
@@ -124,8 +123,7 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
             let separation = periodic(centre - bodies.position[j], length);
             let reach = 0.5 * (diameter + bodies.diameter[j]);
             let squared = separation.length_squared();
-            let diameters = (diameter, bodies.diameter[j]);
-            let contact = || Contact::new(diameters, separation, velocity - bodies.velocity[j]);
+            let contact = || bodies.sphere(i).contact(&bodies.sphere(j), separation);
             // Walls do not cohere with themselves.
             let is_apart = match T::IS_GENERAL && i < grains {
                 true => !law.acts(&contact(), history),
@@ -139,7 +137,7 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
                 }
                 continue;
             }
-            let mut contact = contact();
+            let contact = contact();
             if i >= grains {
                 // Wall against wall, across a closing throat: the same normal law, no friction.
                 let answer = law.frictionless().force(&contact, &mut (), time_step);
@@ -149,18 +147,14 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
                 tally.normal_dissipation += answer.normal_dissipation;
                 continue;
             }
-            let arms = (contact.arm(diameters.0), contact.arm(diameters.1));
-            if T::ROTATES {
-                contact.rotation =
-                    arms.0 * bodies.angular_velocity[i] + arms.1 * bodies.angular_velocity[j];
-                contact.spin = bodies.angular_velocity[i] - bodies.angular_velocity[j];
-            }
             let answer = law.force(&contact, history, time_step);
             force += answer.force;
             bodies.acceleration[j] -= answer.force;
             if T::ROTATES {
-                bodies.angular_acceleration[i] += arms.0 * answer.torque_per_arm;
-                bodies.angular_acceleration[j] += arms.1 * answer.torque_per_arm;
+                for sphere in [i, j] {
+                    let arm = contact.arm(bodies.diameter[sphere]);
+                    bodies.angular_acceleration[sphere] += arm * answer.torque_per_arm;
+                }
             }
             if T::IS_GENERAL {
                 bodies.angular_acceleration[i] += answer.rolling.couple;

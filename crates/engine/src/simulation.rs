@@ -7,7 +7,7 @@ use peristalsis_physics::contact::{GeneralHistory, TangentialHistory};
 use peristalsis_physics::with_normal_law;
 
 use crate::bodies::Bodies;
-use crate::contacts::{Contacts, Memory, with_contact_law};
+use crate::contacts::{Contacts, Memory, Remembered, with_contact_law};
 use crate::ends::Ends;
 use crate::error::EngineError;
 use crate::fast::listed;
@@ -18,7 +18,7 @@ use crate::forces::{Reference, add_body_force, evaluate};
 use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::parameters::{Kernel, Parameters};
-use crate::snapshot::{Remembered, Snapshot, SnapshotView};
+use crate::snapshot::{Snapshot, SnapshotView};
 use crate::steps::Course;
 use crate::touching::{Touching, touching};
 use crate::wall::Wall;

@@ -3,6 +3,7 @@
 use peristalsis_physics::contact::{GeneralHistory, TangentialHistory};
 
 use crate::bodies::Bodies;
+use crate::contacts::Remembered;
 use crate::ends::Ends;
 use crate::error::EngineError;
 use crate::fast::sorted::Sorted;
@@ -11,10 +12,6 @@ use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::parameters::Parameters;
 use crate::wall::Wall;
-
-/// Histories of contacts between moving spheres, (sphere i, sphere j, history), i < j, and of contacts with a prescribed wall,
-/// (grain, wall sphere, history), in order of the grains.
-pub type Remembered<H> = [Vec<(u32, u32, H)>; 2];
 
 /// The state for a restart: spheres, the integrator's past, histories of contacts, the ledger.
 ///

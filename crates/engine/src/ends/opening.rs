@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rand_chacha::ChaCha8Rng;
 
-use crate::initial::uniform;
+use crate::random::uniform;
 use crate::wall::Wall;
 
 /// Random places that are tried for a grain at a look.

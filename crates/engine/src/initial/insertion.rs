@@ -7,10 +7,11 @@ use peristalsis_physics::method::InitialState;
 use peristalsis_physics::wall::{Contraction, RadiusWave};
 use rand_chacha::ChaCha8Rng;
 
-use super::packing::{Packing, uniform};
+use super::packing::Packing;
 use crate::error::EngineError;
 use crate::neighbours::cells::Grid;
 use crate::neighbours::periodic;
+use crate::random::uniform;
 use crate::wall::Wall;
 
 /// Tries for each grain before insertion counts as stalled.

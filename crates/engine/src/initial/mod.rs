@@ -14,11 +14,11 @@ use rand_core::SeedableRng;
 pub use peristalsis_physics::method::InitialState;
 
 pub use self::packing::{LARGEST_MEAN_OVERLAP, Packing, PackingReport};
-pub(crate) use self::packing::{standard_normal, uniform};
 pub use self::settling::{AT_REST, settle};
 
 use crate::bodies::Bodies;
 use crate::error::EngineError;
+use crate::random::{standard_normal, uniform};
 use crate::wall::Wall;
 
 /// Purposes of random numbers: each has its own stream, so that one never shifts another.

@@ -301,8 +301,7 @@ impl Wall {
                 let arm = contact.arm(sphere.diameter);
                 let mut history = T::History::<f64>::default();
                 if T::ROTATES {
-                    contact.rotation = arm * sphere.angular_velocity;
-                    contact.spin = sphere.angular_velocity;
+                    contact = sphere.on_wall(contact);
                     history = memory.take(remembered, number);
                 }
                 if T::IS_GENERAL && !law.acts(&contact, &history) {

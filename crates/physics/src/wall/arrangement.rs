@@ -23,6 +23,21 @@ pub enum Arrangement {
 }
 
 impl Arrangement {
+    /// Every arrangement.
+    pub const ALL: [Self; 6] = [
+        Self::Staggered,
+        Self::Aligned,
+        Self::Random,
+        Self::Disordered,
+        Self::File,
+        Self::Smooth,
+    ];
+
+    /// Whether a ring has so many spheres, and a wavelength so many rings, or as many spheres as that.
+    pub fn has_spheres(self) -> bool {
+        self != Self::Smooth
+    }
+
     /// Whether random numbers decide where the spheres stand.
     pub fn is_drawn(self) -> bool {
         matches!(self, Self::Random | Self::Disordered)

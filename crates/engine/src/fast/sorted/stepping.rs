@@ -1,7 +1,7 @@
 //! The kernel from its beginning to the end of an advance.
 
 use glam::DVec3;
-use peristalsis_physics::contact::NormalLaw;
+use peristalsis_physics::contact::{NormalLaw, reduced_radius};
 
 use super::motion::{Motion, Phase};
 use super::order::Sorting;
@@ -38,7 +38,7 @@ impl Sorted {
             mass: bodies.mass.first().copied().unwrap_or(1.0),
             pairs: PairConstants {
                 reach: diameter,
-                reduced_radius: 0.25 * diameter,
+                reduced_radius: reduced_radius(diameter, diameter),
             },
             wall: WallTable::new(wall.prescribed()?.lattice()?, diameter),
             strips,

@@ -14,7 +14,7 @@ use super::Instant;
 use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, Lanes, Mask};
 use crate::fast::machine::{Instructions, Machine, Work};
-use crate::initial::uniform;
+use crate::random::uniform;
 
 /// Stream of these random numbers. It differs from the streams of the grains, so that equal seeds do no harm.
 const STREAM: u64 = 3;
