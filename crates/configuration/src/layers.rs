@@ -82,7 +82,9 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
             arrangement.owns(&name, "tube.arrangement_seed");
         }
         if one.has_spheres() {
-            RINGS.map(|key| arrangement.owns(&name, key));
+            for key in RINGS {
+                arrangement.owns(&name, key);
+            }
         }
     }
     for key in ["tube.file", "tube.angles", "tube.places"] {

@@ -60,7 +60,7 @@ pub use peristalsis_physics::ends::{Ends, Inlet};
 pub use peristalsis_physics::method::{InitialState, Integrator, Kernel};
 pub use peristalsis_physics::sizes::{SizeForm, Sizes};
 pub use peristalsis_physics::wall::{
-    DriveAngle, ElasticNetwork, NetForce, SegmentDrive, Tethers, WaveDirection,
+    Arrangement, DriveAngle, ElasticNetwork, NetForce, SegmentDrive, Tethers, WaveDirection,
 };
 pub use presets::{PRESETS, Preset, preset};
 pub use reference::reference;

@@ -304,7 +304,8 @@ impl Newtonian {
     /// radius : ndarray
     ///     r [a], shape (n,), float64.
     /// position : ndarray
-    ///     x = (z - c t)/lambda, shape (n,), float64.
+    ///     x = (z - c t)/lambda from the mean radius before the belly, shape (n,), float64: the belly is at 1/4, the throat at
+    ///     3/4. In profiles of simulations a sine has its throat at 1/4: they are half a wavelength apart.
     ///
     /// Returns
     /// -------

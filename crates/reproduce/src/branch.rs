@@ -1,7 +1,8 @@
 //! The stationary flow against a control from one start: where it falls or rises, and the jump there.
 
-use peristalsis_analysis::{Interval, Jump, Uncertain, jump_height};
+use peristalsis_analysis::{Jump, Uncertain, jump_height};
 
+use crate::estimates::{bracket, columns, distance};
 use crate::finding::Statistics;
 use crate::row::{Row, Start, escaped, grouped, mean, scattered};
 use crate::thresholds::{
@@ -104,44 +105,6 @@ impl Step {
     /// Whether the flows differ by more than `least` and [`CLEAR`] errors, in either direction.
     pub(crate) fn counts(&self, least: f64) -> bool {
         self.height.value.abs() > least.max(CLEAR * self.height.error)
-    }
-}
-
-/// One number less another, where an error that is not known, of a single run for instance, counts as none.
-pub(crate) fn distance(one: &Uncertain, other: &Uncertain) -> Uncertain {
-    let known = |number: &Uncertain| match number.error.is_nan() {
-        true => Uncertain::normal(number.value, 0.0),
-        false => *number,
-    };
-    known(one) - known(other)
-}
-
-/// Numbers with errors as columns for fits: abscissa, value, and error, which is at least `least`.
-pub(crate) fn columns(
-    numbers: impl IntoIterator<Item = (f64, Uncertain)>,
-    least: f64,
-) -> [Vec<f64>; 3] {
-    let mut columns: [Vec<f64>; 3] = Default::default();
-    for (x, number) in numbers {
-        columns[0].push(x);
-        columns[1].push(number.value);
-        columns[2].push(number.error.max(least));
-    }
-    columns
-}
-
-/// A number known only by two bounds: its error follows from a uniform distribution between them, which is the 68 per
-/// cent interval as well, so that it reads the same everywhere; the bounds are the 95 per cent interval.
-pub(crate) fn bracket(lower: f64, upper: f64) -> Uncertain {
-    let (value, error) = (0.5 * (lower + upper), (upper - lower) / 12_f64.sqrt());
-    Uncertain {
-        value,
-        error,
-        interval_68: Interval {
-            lower: value - error,
-            upper: value + error,
-        },
-        interval_95: Interval { lower, upper },
     }
 }
 
@@ -427,11 +390,5 @@ mod tests {
         let gap = Branches { rest, jammed }.gap().unwrap();
         assert_eq!((gap.controls, gap.flows), ([2.0, 2.0], [0.2, 0.8]));
         assert!(gap.counts(LEAST_JUMP) && !gap.counts(0.7));
-    }
-
-    #[test]
-    fn a_bracket_knows_its_ends() {
-        let width = bracket(2.7, 2.8);
-        assert!((width.value - 2.75).abs() < 1e-12 && width.interval_95.upper == 2.8);
     }
 }

@@ -1,6 +1,7 @@
 //! Numbers beside their expected values, and errors against the time step.
 
 use peristalsis_analysis::number::{self, significant};
+use peristalsis_analysis::power_exponent;
 use serde::Serialize;
 
 use crate::contents::ReportTable;
@@ -140,7 +141,7 @@ impl Convergence {
         expected_order: [f64; 2],
     ) -> Self {
         let is_rounding = errors.iter().all(|error| *error < ROUNDING);
-        let order = (!is_rounding).then(|| slope(steps, errors));
+        let order = (!is_rounding).then(|| order(steps, errors));
         let [least, largest] = expected_order;
         Self {
             quantity: quantity.to_owned(),
@@ -188,17 +189,10 @@ impl Convergence {
     }
 }
 
-/// Slope of ln y against ln x by least squares.
-fn slope(x: &[f64], y: &[f64]) -> f64 {
-    let number = x.len() as f64;
-    let logarithms = |values: &[f64]| values.iter().map(|v| libm::log(*v)).collect::<Vec<f64>>();
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / number;
-    let (x, y) = (logarithms(x), logarithms(y));
-    let (x_mean, y_mean) = (mean(&x), mean(&y));
-    let pairs = x.iter().zip(&y);
-    let above: f64 = pairs.map(|(x, y)| (x - x_mean) * (y - y_mean)).sum();
-    let below: f64 = x.iter().map(|x| (x - x_mean) * (x - x_mean)).sum();
-    above / below
+/// Power of the step with which errors go.
+fn order(steps: &[f64], errors: &[f64]) -> f64 {
+    let line = power_exponent(steps, errors, errors);
+    line.map_or(f64::NAN, |line| line.slope.value)
 }
 
 /// The word for a check or a case, in Markdown.

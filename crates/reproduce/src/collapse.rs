@@ -11,7 +11,7 @@ use crate::critical::Line;
 use crate::draft::Draft;
 use crate::exhibit::{cell_of, coloured, ends, grid, points, probability, rate_colours};
 use crate::finding::{Quantity, ReportTable};
-use crate::thresholds::{BY_CHANCE, LEAST_STRETCH, MOST_STRETCH, OVERLAP, RESOLVED};
+use crate::thresholds::{BY_CHANCE, COLLAPSED_WITHIN, NO_COLLAPSE_BEYOND, OVERLAP, RESOLVED};
 use crate::walls::OnWall;
 
 /// Searches for the best collapse, and the seed of their starts.
@@ -169,8 +169,8 @@ impl Collapsed {
     /// Whether the curves collapse with any exponents, be these known well or not; `None` in between.
     pub(crate) fn holds(&self) -> Option<bool> {
         match self.found.stretch {
-            stretch if stretch <= LEAST_STRETCH => Some(true),
-            stretch if stretch > MOST_STRETCH => Some(false),
+            stretch if stretch <= COLLAPSED_WITHIN => Some(true),
+            stretch if stretch > NO_COLLAPSE_BEYOND => Some(false),
             _ => None,
         }
     }
@@ -202,7 +202,7 @@ impl Collapsed {
     pub(crate) fn in_words(&self) -> String {
         let [a, b, quality, overlap] = self.best();
         let stretch = self.found.stretch;
-        let what = match stretch <= MOST_STRETCH {
+        let what = match stretch <= NO_COLLAPSE_BEYOND {
             true => "collapsed".to_owned(),
             false => format!("no collapse ({stretch:.0} errors off)"),
         };

@@ -1,7 +1,7 @@
 //! Transition times at one strain rate, and the power laws fitted to them.
 
 use peristalsis_analysis::{
-    Family, FractionCrossing, Law, LineFit, ScatterLawFit, Transition, Uncertain, WidthEnsemble,
+    Family, FractionCrossing, Law, ScatterLawFit, Transition, Uncertain, WidthEnsemble,
     ensembles_by_width, fit_law_to_runs, fit_law_with_scatter, fraction_crossing,
 };
 use peristalsis_run::THRESHOLDS;
@@ -318,48 +318,6 @@ impl Divergence {
     }
 }
 
-/// Weighted mean of several estimates; the error grows with their scatter where that exceeds their errors (Birge's
-/// ratio). `None` without a finite one.
-pub(crate) fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
-    let usable: Vec<&Uncertain> = estimates
-        .iter()
-        .filter(|one| one.value.is_finite() && one.error.is_finite() && one.error > 0.0)
-        .collect();
-    if usable.is_empty() {
-        return None;
-    }
-    let weights: f64 = usable.iter().map(|one| one.error.powi(-2)).sum();
-    let weighted = usable.iter().map(|one| one.value * one.error.powi(-2));
-    let mean = weighted.sum::<f64>() / weights;
-    let squares = usable
-        .iter()
-        .map(|one| ((one.value - mean) / one.error).powi(2));
-    let chi_squared: f64 = squares.sum();
-    let freedom = usable.len() - 1;
-    let ratio = (chi_squared / freedom.max(1) as f64).sqrt();
-    Some(stretched(mean, weights.powf(-0.5), ratio, freedom))
-}
-
-/// The slope of a line, its error stretched to the scatter about the line.
-pub(crate) fn slope(line: &LineFit) -> Uncertain {
-    let LineFit { slope, .. } = line;
-    stretched(
-        slope.value,
-        slope.error,
-        line.scale_factor(),
-        line.degrees_of_freedom,
-    )
-}
-
-/// A number with its error, stretched by a ratio above 1. Below, the errors of the data are taken as they are, with normal
-/// intervals; above, the error comes from their scatter, with Student's, which are wider at once where data are few.
-fn stretched(value: f64, error: f64, ratio: f64, degrees_of_freedom: usize) -> Uncertain {
-    match ratio > 1.0 {
-        true => Uncertain::student(value, ratio * error, degrees_of_freedom),
-        false => Uncertain::normal(value, error),
-    }
-}
-
 /// A critical width with half of its 95 per cent interval as its error, for bars.
 pub(crate) fn bar(width: &Uncertain) -> Uncertain {
     Uncertain::normal(width.value, width.interval_95.length() / 2.0)
@@ -368,16 +326,6 @@ pub(crate) fn bar(width: &Uncertain) -> Uncertain {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn estimates_that_scatter_widen_the_error_of_their_mean() {
-        let agreeing = weighted_mean(&[Uncertain::normal(1.0, 0.1), Uncertain::normal(1.0, 0.1)]);
-        assert!((agreeing.unwrap().error - 0.1 / 2_f64.sqrt()).abs() < 1e-12);
-        let scattered =
-            weighted_mean(&[Uncertain::normal(0.0, 0.1), Uncertain::normal(2.0, 0.1)]).unwrap();
-        assert!((scattered.value - 1.0).abs() < 1e-12 && (scattered.error - 1.0).abs() < 1e-12);
-        assert!(weighted_mean(&[]).is_none());
-    }
 
     #[test]
     fn thresholds_lie_between_known_ones() {

@@ -17,6 +17,7 @@ mod critical;
 pub mod design;
 mod draft;
 mod error;
+mod estimates;
 mod evidence;
 mod examination;
 mod exhibit;

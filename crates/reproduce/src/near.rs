@@ -2,12 +2,11 @@
 
 use peristalsis_analysis::{
     InverseFit, Law, LawFit, Uncertain, fit_inverse_line, fit_inverse_parabola, fit_law,
-    power_exponent,
 };
 
-use crate::branch::columns;
-use crate::critical::{Line, slope};
-use crate::thresholds::{LEAST_RATES, NEAR, STRAIGHT, WINDOW, WORSE};
+use crate::critical::Line;
+use crate::estimates::columns;
+use crate::thresholds::{NEAR, STRAIGHT, WINDOW, WORSE};
 
 /// 1/tau at the widths next to w_c, and the laws fitted to it.
 #[derive(Clone, Debug)]
@@ -127,15 +126,6 @@ impl Near {
         let error = one.error.max(other.error).hypot(half);
         Some(Uncertain::normal(other.value + half, error))
     }
-}
-
-/// The power of the strain rate with which a number goes, its error stretched to the scatter; `None` with too few strain rates.
-pub(crate) fn power_of_rate(numbers: &[(f64, Uncertain)]) -> Option<Uncertain> {
-    let known = numbers.iter().copied();
-    let known = known.filter(|(_, one)| one.value > 0.0 && one.error > 0.0);
-    let [rate, value, error] = columns(known, 0.0);
-    let line = power_exponent(&rate, &value, &error).ok()?;
-    (rate.len() >= LEAST_RATES).then(|| slope(&line))
 }
 
 /// What one number of every strain rate is.

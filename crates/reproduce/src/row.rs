@@ -8,7 +8,9 @@ use peristalsis_run::THRESHOLDS;
 
 use crate::finding::Statistics;
 use crate::thresholds::MOST_DRIFT;
-use crate::walls::{STAGGERED, wall_name};
+
+/// The arrangement that a name leaves out.
+pub(crate) const STAGGERED: &str = "staggered";
 
 /// How the grains stood at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -73,6 +75,27 @@ impl Lattice {
             Self::COARSE => "coarse".to_owned(),
             _ => wall_name(self, STAGGERED),
         }
+    }
+}
+
+/// A wall's name for readers, such as "24 × 26" or "12 × 14 aligned": spheres per ring, rings per wave, and how they stand.
+pub(crate) fn wall_name(lattice: Lattice, arrangement: &str) -> String {
+    let Lattice {
+        spheres_per_ring,
+        rings_per_wave,
+    } = lattice;
+    let lattice = format!("{spheres_per_ring} × {rings_per_wave}");
+    match arrangement {
+        STAGGERED => lattice,
+        arrangement => format!("{lattice} {arrangement}"),
+    }
+}
+
+/// How the wall spheres of a run stand; a table without the column knows staggered walls only.
+pub(crate) fn arrangement<'a>(row: &Row<'a>) -> &'a str {
+    match row.text("arrangement") {
+        "" => STAGGERED,
+        arrangement => arrangement,
     }
 }
 

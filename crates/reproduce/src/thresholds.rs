@@ -107,9 +107,9 @@ pub(crate) const FREE_FLIGHT: f64 = 0.01;
 /// Fraction of the points that must be compared: with less a search wins by pulling the curves apart.
 pub(crate) const OVERLAP: f64 = 0.75;
 /// Distance of the points from one curve, in their errors, up to which there is a collapse: errors are known as well as that.
-pub(crate) const LEAST_STRETCH: f64 = 1.5;
+pub(crate) const COLLAPSED_WITHIN: f64 = 1.5;
 /// The same from which on there is none.
-pub(crate) const MOST_STRETCH: f64 = 3.0;
+pub(crate) const NO_COLLAPSE_BEYOND: f64 = 3.0;
 
 // F1: two kinds of flow.
 
@@ -138,9 +138,6 @@ pub(crate) const LEAST_RUNS_OF_A_MOMENT: usize = 8;
 
 /// Distance from the jump \[d\] of the widths whose runs make the histogram: near enough for both flows.
 pub(crate) const NEAR_THE_JUMP: f64 = 0.05;
-
-/// Least error of a critical width \[d\] in a fit: half of the spacing of the widths about it.
-pub(crate) const LEAST_ERROR_OF_A_WIDTH: f64 = 0.003;
 
 // F8: densities.
 

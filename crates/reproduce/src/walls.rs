@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::Statistics;
 use crate::judgement::{Part, Rates};
-use crate::row::{Lattice, Row, Start, grouped, longest};
+use crate::row::{Lattice, Row, STAGGERED, Start, arrangement, grouped, longest, wall_name};
 use crate::studies::STUDIES;
 use crate::thresholds::MOST_ESCAPED;
 
@@ -30,9 +30,6 @@ pub(crate) const WALLS: &[Wall] = &[
     Wall::new("aligned", Lattice::COARSE, "aligned"),
     Wall::new("disordered", Lattice::new(16, 18), "disordered"),
 ];
-
-/// The arrangement that a name leaves out.
-pub(crate) const STAGGERED: &str = "staggered";
 
 impl Wall {
     const fn new(study: &'static str, lattice: Lattice, arrangement: &'static str) -> Self {
@@ -59,27 +56,6 @@ impl Wall {
         evidence
             .study(&name)
             .map_or_else(|_| Vec::new(), StudyResults::rows)
-    }
-}
-
-/// A wall's name for readers, such as "24 × 26" or "12 × 14 aligned": spheres a ring, rings a wave, and how they stand.
-pub(crate) fn wall_name(lattice: Lattice, arrangement: &str) -> String {
-    let Lattice {
-        spheres_per_ring,
-        rings_per_wave,
-    } = lattice;
-    let lattice = format!("{spheres_per_ring} × {rings_per_wave}");
-    match arrangement {
-        STAGGERED => lattice,
-        arrangement => format!("{lattice} {arrangement}"),
-    }
-}
-
-/// How the wall spheres of a run stand; a table without the column knows staggered walls only.
-pub(crate) fn arrangement<'a>(row: &Row<'a>) -> &'a str {
-    match row.text("arrangement") {
-        "" => STAGGERED,
-        arrangement => arrangement,
     }
 }
 

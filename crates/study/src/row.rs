@@ -1,6 +1,6 @@
 //! The row of a finished run: all that tables and analyses need of it, and nothing that depends on when it was computed.
 
-use peristalsis_configuration::{Configuration, word};
+use peristalsis_configuration::{Arrangement, Configuration, word};
 use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values, csv};
 use peristalsis_run::{RowColumn, Status, Summary, Value, gathered, row_columns, set_by};
 
@@ -8,8 +8,6 @@ use crate::identity::{Identity, PHYSICS_VERSION};
 
 /// Metadata of a table of rows: the version of the physics that computed them.
 pub(crate) const PHYSICS: &str = "peristalsis.physics_version";
-/// Columns that rows of earlier versions lack, and what all of those had.
-const LATER: [(&str, &str); 1] = [("arrangement", "staggered")];
 /// How a finished run has ended.
 const FINISHED: [Status; 2] = [Status::Complete, Status::Settled];
 
@@ -137,13 +135,13 @@ impl Row {
             ));
         }
         let value = |name: &str| self.table.reals(name).map_or(f64::NAN, |found| found[0]);
-        // An empty cell reads as NaN: a quantity that the run does not have, such as J/Jmax of a static wave.
-        let moves = value("strain_rate") != 0.0;
+        // An empty cell reads as NaN: a quantity that the run does not have, such as J/Jmax of a wave that pauses, or of a tube
+        // that all grains have left.
         let is_wrong = |name: &str, found: f64| match name {
             "time" => !(found > 0.0 && found.is_finite()),
             "transition_time" => found < 0.0 || found > value("time"),
             "flow_rate" => !found.is_finite(),
-            "flow_rate_ratio" => found.is_infinite() || moves && found.is_nan(),
+            "flow_rate_ratio" => found.is_infinite(),
             _ => found < 0.0 || found.is_infinite(),
         };
         let measured = [
@@ -215,12 +213,13 @@ fn joined(columns: impl IntoIterator<Item = Column>) -> Table {
 
 /// One value of a column of another table; an empty column of a CSV file reads as reals.
 fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, FormatError> {
-    let later = LATER.iter().find(|(name, _)| *name == column.name);
-    if let (Some((_, value)), Err(_)) = (later, table.column(&column.name)) {
-        return Ok(Values::Text(vec![(*value).to_owned()]));
-    }
-    if column.is_later && table.column(&column.name).is_err() {
-        return Ok(Values::Real(vec![f64::NAN]));
+    if table.column(&column.name).is_err() {
+        match &*column.name {
+            // Walls of rows without it stood as a wall does unless it is said.
+            "arrangement" => return Ok(Values::Text(vec![word(Arrangement::default())])),
+            _ if column.is_later => return Ok(Values::Real(vec![f64::NAN])),
+            _ => {}
+        }
     }
     let found = table.column(&column.name)?;
     match (column.kind, &found.values) {

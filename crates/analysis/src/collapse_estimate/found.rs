@@ -280,7 +280,7 @@ impl<'a> Found<'a> {
         let is_corrected = self.likelihood.is_corrected();
         if is_corrected && self.likelihood.unknown() > MOST_BESIDE_A_CORRECTION {
             doubts.push(
-                "the intervals of four parameters or more beside a correction are too narrow: on made-up data they cover some 60 and 90 per cent rather than 68 and 95"
+                "the intervals of four parameters or more beside a correction are too narrow: on made-up data they covered 60 per cent or fewer rather than 68, and 90 or fewer rather than 95"
                     .to_owned(),
             );
         }

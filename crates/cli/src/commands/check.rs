@@ -26,44 +26,47 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
 }
 
 pub(super) fn in_words(estimate: &Estimate) -> String {
-    let duration = estimate.duration;
+    let warnings = estimate.warnings.iter();
+    let warnings = warnings.map(|warning| format!("warning: {}: {}", warning.key, warning.message));
+    let lines = [tube(estimate), units(estimate), cost(estimate)];
+    let lines: Vec<String> = lines.into_iter().flatten().chain(warnings).collect();
+    lines.join("\n") + "\n"
+}
+
+/// Grains, wall and time, and what a Newtonian fluid would do.
+fn tube(estimate: &Estimate) -> Vec<String> {
+    let waiting = match estimate.waiting_grains {
+        None | Some(0) => String::new(),
+        Some(waiting) => format!(", of which {waiting} and those between the ends wait"),
+    };
+    let wall = match estimate.wall_spheres {
+        0 => "smooth".to_owned(),
+        spheres => format!("{spheres} spheres"),
+    };
     let mut lines = vec![
         format!(
-            "grains            {} (volume fraction {:.4}, number density {:.4} d^-3){}",
-            estimate.grains,
-            estimate.volume_fraction,
-            estimate.number_density,
-            match estimate.waiting_grains {
-                None | Some(0) => String::new(),
-                Some(waiting) => format!(", of which {waiting} and those between the ends wait"),
-            }
+            "grains            {} (volume fraction {:.4}, number density {:.4} d^-3){waiting}",
+            estimate.grains, estimate.volume_fraction, estimate.number_density
         ),
         format!(
-            "wall              {} along {} d",
-            match estimate.wall_spheres {
-                0 => "smooth".to_owned(),
-                spheres => format!("{spheres} spheres"),
-            },
+            "wall              {wall} along {} d",
             rounded(estimate.length)
         ),
-        match (estimate.period, estimate.periods) {
-            (Some(period), Some(periods)) => {
-                let [duration, periods, period] = [duration, periods, period].map(rounded);
-                let periods = counted(periods, "period");
-                let led = estimate.wavelengths.map(|wavelengths| {
-                    format!(
-                        " as drive.strain_rate has them; led by drive.schedule, the wave runs {} wavelengths",
-                        rounded(wavelengths)
-                    )
-                });
-                let led = led.unwrap_or_default();
-                format!("time              {duration} t: {periods} of {period} t{led}")
-            }
-            _ => format!(
-                "time              {} t, the wave stands still",
-                rounded(duration)
-            ),
-        },
+    ];
+    if let Some(openings) = estimate.clear_openings {
+        let [throat, belly] = openings.map(|opening| significant(opening, 4));
+        let in_mm = estimate.si.as_ref().map(|si| {
+            let [throat, belly] =
+                openings.map(|opening| significant(1e3 * si.unit_length_m * opening, 4));
+            format!(" ({throat} and {belly} mm)")
+        });
+        let in_mm = in_mm.unwrap_or_default();
+        lines.push(format!(
+            "clear opening     {throat} d at the throats, {belly} d in the bellies{in_mm}"
+        ));
+    }
+    lines.extend([
+        time(estimate),
         format!(
             "steps             {} of {} t; a contact lasts about {} t, {} steps",
             estimate.steps,
@@ -75,19 +78,7 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             "restitution       {} of two grains that meet at the speed of the wave",
             significant(estimate.restitution, 3)
         ),
-    ];
-    if let Some(openings) = estimate.clear_openings {
-        let [throat, belly] = openings.map(|opening| significant(opening, 4));
-        let in_mm = estimate.si.as_ref().map(|si| {
-            let [throat, belly] =
-                openings.map(|opening| significant(1e3 * si.unit_length_m * opening, 4));
-            format!(" ({throat} and {belly} mm)")
-        });
-        let in_mm = in_mm.unwrap_or_default();
-        let line =
-            format!("clear opening     {throat} d at the throats, {belly} d in the bellies{in_mm}");
-        lines.insert(2, line);
-    }
+    ]);
     if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
         let in_bore = estimate.newtonian_flow_rate_ratio_clear_bore;
         let in_bore = in_bore.map(|ratio| format!(", {ratio:.4} in its clear bore"));
@@ -96,75 +87,104 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             in_bore.unwrap_or_default()
         ));
     }
-    if let Some(si) = &estimate.si {
-        let (mut wave, mut flow) = (String::new(), String::new());
-        if estimate.period.is_some() {
-            let [frequency, speed] =
-                [si.wave_frequency_hz, si.wave_speed_m_per_s].map(|it| significant(it, 4));
-            wave = format!("; a wave of {frequency} Hz, {speed} m/s");
-            let largest = significant(si.largest_mass_flow_rate_kg_per_s, 4);
-            flow = format!("; at most {largest} kg/s");
-        }
-        if si.fastest_wave_frequency_hz != si.wave_frequency_hz {
-            let frequency = significant(si.fastest_wave_frequency_hz, 4);
-            wave += &format!(", by the schedule up to {frequency} Hz");
-        }
-        lines.push(format!(
+    lines
+}
+
+/// How long the run is.
+fn time(estimate: &Estimate) -> String {
+    let duration = rounded(estimate.duration);
+    let (Some(period), Some(periods)) = (estimate.period, estimate.periods) else {
+        return format!("time              {duration} t, the wave stands still");
+    };
+    let [periods, period] = [periods, period].map(rounded);
+    let periods = counted(periods, "period");
+    let led = estimate.wavelengths.map(|wavelengths| {
+        format!(
+            " as drive.strain_rate has them; led by drive.schedule, the wave runs {} wavelengths",
+            rounded(wavelengths)
+        )
+    });
+    let led = led.unwrap_or_default();
+    format!("time              {duration} t: {periods} of {period} t{led}")
+}
+
+/// The units and the drive in SI, where the configuration has units.
+fn units(estimate: &Estimate) -> Vec<String> {
+    let Some(si) = &estimate.si else {
+        return Vec::new();
+    };
+    let (mut wave, mut flow) = (String::new(), String::new());
+    if estimate.period.is_some() {
+        let [frequency, speed] =
+            [si.wave_frequency_hz, si.wave_speed_m_per_s].map(|it| significant(it, 4));
+        wave = format!("; a wave of {frequency} Hz, {speed} m/s");
+        let largest = significant(si.largest_mass_flow_rate_kg_per_s, 4);
+        flow = format!("; at most {largest} kg/s");
+    }
+    if si.fastest_wave_frequency_hz != si.wave_frequency_hz {
+        let frequency = significant(si.fastest_wave_frequency_hz, 4);
+        wave += &format!(", by the schedule up to {frequency} Hz");
+    }
+    let mut lines = vec![
+        format!(
             "in SI             d = {} m, m = {} kg, t = {} s{wave}",
             significant(si.unit_length_m, 4),
             significant(si.unit_mass_kg, 4),
             significant(si.unit_time_s, 4)
-        ));
-        lines.push(format!(
+        ),
+        format!(
             "                  {} s in steps of {} s{flow}; unit of pressure {} Pa, of power {} W",
             significant(si.duration_s, 4),
             significant(si.time_step_s, 3),
             significant(si.unit_pressure_pa, 4),
             significant(si.unit_power_w, 4)
-        ));
-        if si.gravity_m_per_s2 != [0.0; 3] {
-            let [x, y, z] = si.gravity_m_per_s2.map(|it| significant(it, 4));
-            lines.push(format!("                  gravity [{x}, {y}, {z}] m/s^2"));
-        }
-        if si.body_force_m_per_s2 != 0.0 {
-            let force = significant(si.body_force_m_per_s2, 4);
-            lines.push(match estimate.period {
-                Some(_) => format!(
-                    "                  body force {force} m/s^2 along the wave, weight included: a pressure rise of {} Pa over a wavelength",
-                    significant(si.pressure_rise_pa, 4)
-                ),
-                None => format!(
-                    "                  body force {force} m/s^2 along the tube, weight included"
-                ),
-            });
-        }
+        ),
+    ];
+    if si.gravity_m_per_s2 != [0.0; 3] {
+        let [x, y, z] = si.gravity_m_per_s2.map(|it| significant(it, 4));
+        lines.push(format!("                  gravity [{x}, {y}, {z}] m/s^2"));
     }
+    if si.body_force_m_per_s2 != 0.0 {
+        let force = significant(si.body_force_m_per_s2, 4);
+        lines.push(match estimate.period {
+            Some(_) => format!(
+                "                  body force {force} m/s^2 along the wave, weight included: a pressure rise of {} Pa over a wavelength",
+                significant(si.pressure_rise_pa, 4)
+            ),
+            None => format!(
+                "                  body force {force} m/s^2 along the tube, weight included"
+            ),
+        });
+    }
+    lines
+}
+
+/// What the run takes: time, kernel, threads, memory, disk.
+fn cost(estimate: &Estimate) -> Vec<String> {
     let [expected, packing] = [estimate.expected_seconds, estimate.packing_seconds].map(seconds);
-    lines.push(format!(
-        "expected time     {expected}, after {packing} of packing"
-    ));
+    let is_reference = estimate.kernel == Kernel::Reference;
     let kernel = match estimate.reference_only {
         Some(what) => format!("reference, for it alone computes {what}"),
-        None => match estimate.kernel {
-            Kernel::Fast => "fast".to_owned(),
-            Kernel::Reference => "reference".to_owned(),
-        },
+        None if is_reference => "reference".to_owned(),
+        None => "fast".to_owned(),
     };
-    lines.push(format!("kernel            {kernel}"));
-    let why = if estimate.reference_only.is_some() || estimate.kernel == Kernel::Reference {
-        "the reference kernel takes no more".to_owned()
-    } else {
-        format!(
+    let why = match estimate.reference_only.is_some() || is_reference {
+        true => "the reference kernel takes no more".to_owned(),
+        false => format!(
             "one for each {SPHERES_OF_A_THREAD} of {} moving spheres, at least one, on {}",
             estimate.moving_spheres,
             counted(processors(), "processor")
-        )
+        ),
     };
-    lines.push(format!("threads           {}: {why}", estimate.threads));
-    lines.push(format!(
-        "memory            at most some {}",
-        size(estimate.memory_bytes as u64)
-    ));
+    let mut lines = vec![
+        format!("expected time     {expected}, after {packing} of packing"),
+        format!("kernel            {kernel}"),
+        format!("threads           {}: {why}", estimate.threads),
+        format!(
+            "memory            at most some {}",
+            size(estimate.memory_bytes as u64)
+        ),
+    ];
     if let Some(trajectory) = &estimate.trajectory {
         for (format, bytes) in &trajectory.bytes {
             let (name, size) = (format.file_name(), size(*bytes));
@@ -175,8 +195,5 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
             ));
         }
     }
-    for warning in &estimate.warnings {
-        lines.push(format!("warning: {}: {}", warning.key, warning.message));
-    }
-    lines.join("\n") + "\n"
+    lines
 }

@@ -66,7 +66,8 @@ def field(
     flow : Newtonian
         The flow.
     radius, position : array_like
-        r [a] and x = (z - c t)/lambda, broadcast against each other.
+        r [a] and x = (z - c t)/lambda, broadcast against each other. The belly is at x = 1/4, the throat at 3/4. In
+        profiles of simulations a sine has its throat at 1/4: they are half a wavelength apart.
 
     Returns
     -------

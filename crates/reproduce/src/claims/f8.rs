@@ -1,6 +1,6 @@
 //! F8: what the volume fraction changes.
 
-use peristalsis_analysis::fit_line;
+use peristalsis_analysis::fit_line_to_scatter;
 use peristalsis_figures::chart::{Corner, Note};
 
 use super::prelude::*;
@@ -104,8 +104,8 @@ impl Judged {
         let critical = densities
             .iter()
             .filter_map(|density| Some((density.fraction, density.critical?)));
-        let [fraction, width, error] = columns(critical, LEAST_ERROR_OF_A_WIDTH);
-        let line = fit_line(&fraction, &width, &error).ok();
+        let [fraction, width, error] = columns(critical, 0.0);
+        let line = fit_line_to_scatter(&fraction, &width, &error).ok();
         let diameter = densities[0].diameter();
         let distances = width.iter().map(|width| diameter - width);
         let mean = distances.clone().sum::<f64>() / width.len().max(1) as f64;
@@ -118,7 +118,7 @@ impl Judged {
         let exponents = densities.iter().filter_map(Density::exponent);
         Self {
             slower: flows.map(|flows| flows.windows(2).all(falls)),
-            change: line.as_ref().map(slope),
+            change: line.map(|line| line.line.slope),
             relative_change: ends(distances).map_or(0.0, relative),
             linear: Rates::of(linear),
             exponent: weighted_mean(&exponents.collect::<Vec<_>>()),

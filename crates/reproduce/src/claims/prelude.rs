@@ -15,6 +15,7 @@ pub(super) use crate::collapse::*;
 pub(super) use crate::critical::*;
 pub(super) use crate::draft::Draft;
 pub(super) use crate::error::Result;
+pub(super) use crate::estimates::*;
 pub(super) use crate::evidence::{Evidence, StudyResults, first_kept};
 pub(super) use crate::exhibit::*;
 pub(super) use crate::finding::{Finding, Quantity, ReportFigure, Statistics, Verdict};

@@ -1,6 +1,6 @@
 //! Q2: roughness of the wall.
 
-use peristalsis_analysis::{fit_line, mean_and_error};
+use peristalsis_analysis::{fit_line_to_scatter, mean_and_error};
 
 use super::f3::AMPLITUDE;
 use super::f7::SLOPE;
@@ -167,12 +167,12 @@ impl Candidate {
                 amplitudes.push((rate, Uncertain::normal(amplitude, error)));
             }
         }
-        let [rate, width, error] = columns(widths, LEAST_ERROR_OF_A_WIDTH);
-        let line = fit_line(&rate, &width, &error).ok();
+        let [rate, width, error] = columns(widths, 0.0);
+        let line = fit_line_to_scatter(&rate, &width, &error).ok();
         Some(Self {
             name,
             density: first.wall_density(),
-            slope: line.map(|line| slope(&line)),
+            slope: line.map(|line| line.line.slope),
             power: power_of_rate(&amplitudes),
             escaped,
         })

@@ -23,28 +23,58 @@ pub(super) fn how_far(run: &Run, summary: &Summary) -> String {
 }
 
 pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
+    let mut text = transition(run, summary) + "\n";
+    text += &flow(run, summary);
+    text += &against_a_load(summary);
+    text += &in_si(run, summary);
+    text += &wear(summary);
+    text += &mixing(run, summary);
+    text += &segregation(run, summary);
+    if let Some(discharge) = &summary.discharge {
+        text += &through(discharge, summary);
+    }
+    text += &format!(
+        "\n{}, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} in {}: {:.2} million grain-steps/s\n",
+        counted(run.configuration().grains.number, "grain"),
+        summary.escaped,
+        summary.largest_overlap,
+        summary.energy_residual,
+        counted(summary.steps, "step"),
+        seconds(summary.seconds),
+        summary.grain_steps_per_second() / 1e6
+    );
+    for diagnosis in &summary.wall_diagnosis {
+        text += &format!("the wall: {diagnosis}\n");
+    }
+    text
+}
+
+/// When the flow passed from one kind to the other.
+fn transition(run: &Run, summary: &Summary) -> String {
     let configuration = run.configuration();
-    let transition = match summary.transition_time {
+    let threshold = configuration.observe.transition_threshold;
+    let periods = |time: f64| tenths(time * configuration.drive.strain_rate);
+    match summary.transition_time {
         // The mean of a period is the first that there is.
         Some(time) if time * configuration.drive.strain_rate < 1.0 => format!(
-            "transition in the first period, at t = {time:.1} if the flow changes evenly: J/Jmax crosses {}",
-            configuration.observe.transition_threshold
+            "transition in the first period, at t = {time:.1} if the flow changes evenly: J/Jmax crosses {threshold}"
         ),
         Some(time) => format!(
-            "transition at t = {time:.1} ({} periods): J/Jmax crosses {}",
-            tenths(time * configuration.drive.strain_rate),
-            configuration.observe.transition_threshold
+            "transition at t = {time:.1} ({} periods): J/Jmax crosses {threshold}",
+            periods(time)
         ),
         None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
         None if run.recorder().periods() < u64::from(CONFIRMATION_PERIODS) => format!(
             "too short to tell of a transition: {} periods, and {CONFIRMATION_PERIODS} whole ones in a row confirm it",
-            tenths(summary.time * configuration.drive.strain_rate)
+            periods(summary.time)
         ),
-        None => format!(
-            "no transition within {} periods",
-            tenths(summary.time * configuration.drive.strain_rate)
-        ),
-    };
+        None => format!("no transition within {} periods", periods(summary.time)),
+    }
+}
+
+/// The late flow beside that of a Newtonian fluid, and whether it still changes.
+fn flow(run: &Run, summary: &Summary) -> String {
+    let configuration = run.configuration();
     let late = 100.0 * configuration.observe.late_fraction;
     let (ratio, error) = summary.flow_rate_ratio;
     let said = measured(summary.flow_rate_ratio);
@@ -71,87 +101,64 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         let clear_bore = clear_bore.filter(|_| configuration.units.is_some());
         let clear_bore = clear_bore.map(|it| format!("; in the clear bore {}", number(it)));
         let clear_bore = clear_bore.unwrap_or_default();
-        flow.push_str(&format!(
-            " (a Newtonian fluid{load}: {newtonian}{clear_bore})"
-        ));
+        flow += &format!(" (a Newtonian fluid{load}: {newtonian}{clear_bore})");
     }
     if summary.is_still_changing() {
-        flow.push_str(&format!(
+        flow += &format!(
             "\nit still changes: by {} from the first half of this time to the second",
             significant(summary.flow_rate_ratio_drift(), 2)
-        ));
+        );
     }
+    flow
+}
+
+/// Useful power and efficiency, where grains are pumped against a load.
+fn against_a_load(summary: &Summary) -> String {
     // Weight that carries grains through an open tube is no load.
     let falls = |pumping: &&Pumping| summary.discharge.is_some() && pumping.pressure_rise <= 0.0;
-    if let Some(pumping) = summary.pumping.as_ref().filter(|it| !falls(it)) {
-        let (rise, power) = (pumping.pressure_rise, pumping.useful_power.0);
-        let in_si = (
-            summary.in_si(rise, Units::pressure),
-            summary.in_si(power, Units::power),
-        );
-        let load = match in_si {
-            (Some(rise), Some(power)) => {
-                let [rise, power] = [rise, power].map(number);
-                format!("{rise} Pa over a wavelength: useful power {power} W")
-            }
-            _ => format!(
-                "{} m/(d t^2) over a wavelength: useful power {} m d^2/t^3",
-                significant(rise, 4),
-                significant(power, 4)
-            ),
-        };
-        let efficiency = efficiency(pumping);
-        flow.push_str(&format!(
-            "\nagainst a pressure rise of {load}, {efficiency}"
-        ));
-    }
-    if let (Some((mass_flow, error)), Some(power), Some(pressure), Some(largest)) = (
+    let Some(pumping) = summary.pumping.as_ref().filter(|it| !falls(it)) else {
+        return String::new();
+    };
+    let exact = |value: f64| (value, f64::NAN);
+    let (rise, power) = (exact(pumping.pressure_rise), exact(pumping.useful_power.0));
+    let rise = told(summary, rise, Units::pressure, ["Pa", "m/(d t^2)"]);
+    let power = told(summary, power, Units::power, ["W", "m d^2/t^3"]);
+    let efficiency = efficiency(pumping);
+    format!(
+        "\nagainst a pressure rise of {rise} over a wavelength: useful power {power}, {efficiency}"
+    )
+}
+
+/// Mass flow, power, pressure and contact forces, where the configuration has units.
+fn in_si(run: &Run, summary: &Summary) -> String {
+    let (Some((mass_flow, error)), Some(power), Some(pressure), Some(largest)) = (
         summary.mass_flow_rate_in_si(),
         summary.in_si(summary.wall_power(), Units::power),
         summary.in_si(summary.wall_pressure, Units::pressure),
         summary.in_si(summary.wall_pressure_largest, Units::pressure),
-    ) {
-        let torque = summary.wall_torque.map(|(torque, _)| torque);
-        let torque = torque.and_then(|torque| summary.in_si(torque, Units::energy));
-        let torque = torque.map(|it| format!(" (torque {} N m at a wave a turn)", number(it)));
-        let torque = torque.unwrap_or_default();
-        flow.push_str(&format!(
-            "\nin SI: {} kg/h, wall power {} W{torque}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
-            measured((HOUR * mass_flow, HOUR * error)),
-            number(power),
-            number(pressure),
-            number(largest),
-            configuration.observe.profile_bins
-        ));
-        let force = |value: f64| summary.in_si(value, Units::force).map(number);
-        if let Some((high, largest, moments)) = summary.contact_force()
-            && let (Some(high), Some(largest)) = (force(high), force(largest))
-        {
-            flow.push_str(&format!(
-                "\n       99 % of the contacts bear less than {high} N, the largest bears {largest} N (at {})",
-                counted(moments, "moment")
-            ));
-        }
-    }
-    flow.push_str(&wear(summary));
-    flow.push_str(&mixing(run, summary));
-    flow.push_str(&segregation(run, summary));
-    if let Some(discharge) = &summary.discharge {
-        flow.push_str(&through(discharge, summary));
-    }
+    ) else {
+        return String::new();
+    };
+    let torque = summary.wall_torque.map(|(torque, _)| torque);
+    let torque = torque.and_then(|torque| summary.in_si(torque, Units::energy));
+    let torque = torque.map(|it| format!(" (torque {} N m at a wave a turn)", number(it)));
     let mut text = format!(
-        "{transition}\n{flow}\n{}, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} in {}: \
-         {:.2} million grain-steps/s\n",
-        counted(configuration.grains.number, "grain"),
-        summary.escaped,
-        summary.largest_overlap,
-        summary.energy_residual,
-        counted(summary.steps, "step"),
-        seconds(summary.seconds),
-        summary.grain_steps_per_second() / 1e6
+        "\nin SI: {} kg/h, wall power {} W{}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
+        measured((HOUR * mass_flow, HOUR * error)),
+        number(power),
+        torque.unwrap_or_default(),
+        number(pressure),
+        number(largest),
+        run.configuration().observe.profile_bins
     );
-    for diagnosis in &summary.wall_diagnosis {
-        text.push_str(&format!("the wall: {diagnosis}\n"));
+    let force = |value: f64| summary.in_si(value, Units::force).map(number);
+    if let Some((high, largest, moments)) = summary.contact_force()
+        && let (Some(high), Some(largest)) = (force(high), force(largest))
+    {
+        text += &format!(
+            "\n       99 % of the contacts bear less than {high} N, the largest bears {largest} N (at {})",
+            counted(moments, "moment")
+        );
     }
     text
 }

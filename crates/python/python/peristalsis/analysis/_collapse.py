@@ -33,7 +33,7 @@ class CollapseResult:
     errors : tuple of float
         Standard errors: half the intervals of 68 per cent; infinite where the points leave a parameter open.
     intervals : tuple of Interval
-        Intervals that cover the truth in 95 per cent of repetitions.
+        Intervals that, where `trusted`, cover the truth in 95 per cent of repetitions.
     trusted : bool
         Whether parameters and errors can be trusted.
     doubts : tuple of str
