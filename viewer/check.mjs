@@ -13,6 +13,7 @@ import { parseArgs } from "node:util";
 import { chromium } from "playwright-core";
 import { everyLook } from "./audit.mjs";
 import { moreChecks } from "./check-more.mjs";
+import { thresholdChecks } from "./check-thresholds.mjs";
 import { webChecks } from "./check-web.mjs";
 
 const { values, positionals } = parseArgs({
@@ -21,7 +22,7 @@ const { values, positionals } = parseArgs({
 });
 const [program] = positionals;
 const { pictures, only } = values;
-assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,web,many,more,open,lost,bare,numbers,studies,front,widget]");
+assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,thresholds,web,many,more,open,lost,bare,numbers,studies,front,widget]");
 const saves = mkdtempSync(join(tmpdir(), "peristalsis-viewer-"));
 const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
@@ -371,10 +372,14 @@ async function checkStudy(browser) {
   // Where the transition is known, a point leads to shortly before it.
   const links = await page.evaluate(() =>
     window.study.points.map((point) => {
-      window.study.chosen = point;
-      return [point.atLeast, window.study.address(0)];
+      const { results } = window.study;
+      const row = point.rows.at(-1);
+      const moment = results.number("transition_time", row) / results.periodOf(row) - 5;
+      return [moment, window.study.address(results, row)];
     }));
-  assert(links.some(([, link]) => /#jump=[0-9.]+$/.test(link)), String(links));
+  assert(links.some(([moment]) => Number.isFinite(moment)), String(links));
+  for (const [moment, link] of links)
+    assert.equal(link.split("#jump=")[1], Number.isFinite(moment) ? Math.max(0, moment).toFixed(2) : undefined, link);
   await page.check("#logarithmic");
   await shoot(page, "study-times");
   await page.uncheck("#logarithmic");
@@ -445,7 +450,7 @@ const browser = await chromium.launch({
   args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
 const tools = { serve, record, open, measured, until, shoot, pictures, pixels, isTooWide, desk, phone, program, runs };
-const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, ...webChecks(tools), ...moreChecks(tools) };
+const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, ...thresholdChecks, ...webChecks(tools), ...moreChecks(tools) };
 try {
   for (const [name, check] of Object.entries(checks)) {
     if (only !== undefined && !only.split(",").includes(name)) continue;

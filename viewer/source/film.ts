@@ -14,6 +14,8 @@ export interface FilmRow extends Row {
 /** Frames in the order of time, and the time series beside them. */
 export abstract class Film {
   rows: FilmRow[] = [];
+  /** Number of the row from which on thresholds are looked for: a sweep forgets what was before it. */
+  since = 0;
   /** Of the rows before the last thinning those are kept whose number is a multiple of this. */
   private each = 1;
 

@@ -39,6 +39,7 @@ export class History extends Film {
       this.frames = this.frames.filter((known) => known.clock < frame.clock);
       this.bytes = this.frames.reduce((sum, known) => sum + known.bytes, 0);
       this.rows = this.rows.filter((row) => row.clock <= frame.clock);
+      if (this.since > (this.rows.at(-1)?.number ?? 0)) this.since = 0;
     }
     this.addRows(frame.rows, frame.driven.friction);
     const last = this.frames.at(-1);

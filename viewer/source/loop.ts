@@ -4,23 +4,12 @@ import { type Ghost, ghostsOf, ghostsOfFriction } from "./ghosts";
 import type { Frame, Welcome } from "./protocol";
 import { download } from "./share";
 import { SvgContext } from "./svg";
-
-/** Half of the largest flow: where a flow counts as jammed, and as let go. */
-const HALF = 0.5;
-/** How far the flow has to go to both sides of it. */
-const ROOM = 0.1;
-
-/** Values of the driven parameter at which the flow came to be jammed, and let go, last. */
-export interface Thresholds {
-  jams: number | null;
-  letsGo: number | null;
-}
+import { type Driving, type Span, type Thresholds, thresholds } from "./thresholds";
 
 /** What the loop is drawn against. */
-export interface Across {
+export interface Across extends Driving {
   name: string;
   unit: string;
-  of: (row: FilmRow) => number;
   /** The words for up and down. */
   ways: [string, string];
   ghosts: Ghost[];
@@ -28,52 +17,46 @@ export interface Across {
 
 /** The width or the force; friction, where the tube is one whose flow by friction is published. */
 export function acrossOf(tube: Welcome, frame: Frame): Across {
-  const friction = ghostsOfFriction(tube, frame.driven);
-  if (friction.length > 0)
-    return { name: "friction μ", unit: "", of: (row) => row.friction ?? NaN, ways: ["more friction", "less"], ghosts: friction };
+  const { width, force_amplitude, friction } = tube.ranges;
+  const byFriction = ghostsOfFriction(tube, frame.driven);
+  if (byFriction.length > 0)
+    return {
+      name: "friction μ", unit: "", of: (row) => row.friction ?? NaN, small: 0.02, opens: 1, range: friction ?? [0, 1],
+      ways: ["more friction", "less"], ghosts: byFriction,
+    };
   const ghosts = ghostsOf(tube, frame.driven);
   const of = (row: FilmRow) => row.amplitude ?? NaN;
-  if (tube.control === "strain") return { name: "width w / d", unit: " d", of, ways: ["widened", "narrowed"], ghosts };
-  return { name: "force amplitude f / (m d/t²)", unit: "", of, ways: ["more force", "less"], ghosts };
-}
-
-/** Where the flow crossed half of the largest while the parameter was driven. */
-export function thresholds(rows: FilmRow[], { of }: Across): Thresholds {
-  const found: Thresholds = { jams: null, letsGo: null };
-  let [side, crossed, low, high] = [0, NaN, Infinity, -Infinity];
-  for (const row of rows) {
-    const value = of(row);
-    if (value < low) low = value;
-    if (value > high) high = value;
-    const now = row.average > HALF + ROOM ? 1 : row.average < HALF - ROOM ? -1 : 0;
-    if (now === side) crossed = NaN;
-    else if (Number.isNaN(crossed) && (row.average - HALF) * side < 0) crossed = value;
-    if (now === 0 || now === side) continue;
-    // What a tube does by itself says nothing of its width.
-    const isDriven = Math.max(value - low, high - value) > 0.004 * Math.abs(value);
-    if (side !== 0 && isDriven) found[now > 0 ? "jams" : "letsGo"] = Number.isNaN(crossed) ? value : crossed;
-    [side, crossed, low, high] = [now, NaN, Infinity, -Infinity];
-  }
-  return found;
+  if (tube.control === "strain")
+    return { name: "width w / d", unit: " d", of, small: 0.012, opens: 1, range: width ?? [0, 1], ways: ["widened", "narrowed"], ghosts };
+  return {
+    name: "force amplitude f / (m d/t²)", unit: " m d/t²", of, small: 1e-4, opens: -1, range: force_amplitude ?? [0, 1],
+    ways: ["more force", "less"], ghosts,
+  };
 }
 
 /** In words. */
-export function wordsOf({ jams, letsGo }: Thresholds, { name, unit }: Across): string {
+export function wordsOf({ jams, letsGo, not }: Thresholds, { name, unit, opens }: Across): string {
   const symbol = name.split(" ").find((word) => /^[wfμ]$/.test(word)) ?? name;
   const at = (value: number) => `${symbol} = ${written(value)}${unit}`;
-  if (jams !== null && letsGo !== null) return `It jams at ${at(jams)} and lets go at ${at(letsGo)}.`;
-  if (jams !== null) return `It jams at ${at(jams)}. Now go back: where does it let go?`;
-  return letsGo !== null ? `It lets go at ${at(letsGo)}. Now go back: where does it jam?` : "";
+  const over = ([from, to]: Span) => (from === to ? `at ${at(from)}` : `between ${at(from)} and ${written(to)}${unit}`);
+  const said: string[] = [];
+  if (jams) said.push(`jams ${over(jams)}`);
+  if (letsGo) said.push(`lets go ${over(letsGo)}`);
+  if (not && !(jams && letsGo)) {
+    const [verb, way] = not.deed === "jams" ? ["jammed", -opens] : ["let go", opens];
+    said.push(`has not ${verb} ${way > 0 ? "up" : "down"} to ${at(not.to)}`);
+  }
+  if (said.length === 0) return "";
+  const next = said.length > 1 || not ? "" : ` Now go back: where does it ${jams ? "let go" : "jam"}?`;
+  return `It ${said.join(" and ")}.${next}`;
 }
 
-/** J/Jmax against the driven parameter, beside the published branches and a Newtonian fluid. */
-export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, colours: Ink): void {
+/** J/Jmax against the driven parameter, beside the published branches and a Newtonian fluid; answers where it jams and lets go. */
+export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, colours: Ink): Thresholds {
   const across = acrossOf(tube, frame);
   const rows = film.rows.filter((row) => Number.isFinite(across.of(row)));
-  const { ghosts } = across;
-  const byFriction = across.name.startsWith("friction");
-  const range = (byFriction ? tube.ranges.friction : (tube.ranges.width ?? tube.ranges.force_amplitude)) ?? [0, 1];
-  const newtonian = byFriction ? [] : tube.newtonian;
+  const { ghosts, range } = across;
+  const newtonian = across.name.startsWith("friction") ? [] : tube.newtonian;
   let [least, most] = [-0.1, 1.05];
   for (const { average } of rows) if (Number.isFinite(average)) [least, most] = [Math.min(least, average), Math.max(most, average)];
   let [from, to] = [Infinity, -Infinity];
@@ -87,7 +70,7 @@ export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, 
     { text: across.ways[1], colour: colours.against, dash: [5, 3] },
   ];
   for (const { start } of ghosts) legend.push({ text: `published, from ${start}`, colour: colours.wall, mark: start === "rest" ? "full" : "open" });
-  if (newtonian.length > 0) legend.push({ text: "Newtonian fluid", colour: colours.faint, dash: [1, 3] });
+  if (newtonian.length > 0) legend.push({ text: "Newtonian fluid without load", colour: colours.faint, dash: [1, 3] });
   chart.begin([from, to], [least, most], [across.name, "J / Jmax"], colours, { legend });
   chart.curve([[from, 0], [to, 0]], colours.faint, 1);
   chart.curve(newtonian, colours.faint, 1.5, [1, 3]);
@@ -96,15 +79,16 @@ export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, 
     for (const [x, y] of points) chart.dot(x, y, 2.6, start === "rest" ? colours.wall : colours.back, colours.wall);
   }
   drawCourse(chart, rows, across, colours);
-  const found = thresholds(rows, across);
+  const found = thresholds(rows.filter(({ number }) => number >= film.since), across);
   for (const [key, colour] of [["jams", colours.against], ["letsGo", colours.along]] as const) {
-    const value = found[key];
-    if (value === null) continue;
-    chart.upright(value, colour);
-    chart.label(value, key === "jams" ? "jams" : "lets go", key === "jams" ? "right" : "left", colour);
+    const [from, to] = found[key] ?? [];
+    if (from === undefined || from !== to) continue;
+    chart.upright(from, colour);
+    chart.label(from, key === "jams" ? "jams" : "lets go", key === "jams" ? "right" : "left", colour, colours.back);
   }
   const at = rows.findLastIndex((row) => row.clock <= frame.clock + 1e-9);
   if (at >= 0) chart.dot(across.of(rows[at]), rows[at].average, 5, colours.accent, colours.back);
+  return found;
 }
 
 /** Time between two rows above which some are missing. */

@@ -1,4 +1,5 @@
 import type { Connection } from "./connection";
+import type { Film } from "./film";
 import { element } from "./page";
 import type { Steered, Welcome } from "./protocol";
 
@@ -7,7 +8,7 @@ const MINUTE = 60;
 /** Part of the samples that a run can have which it takes at most, or of those that are left. */
 const SHARE = 0.25;
 const REST = 0.9;
-/** Parts of the way, and milliseconds from one look at the place to the next. */
+/** Steps there and back, and milliseconds from one look at the place to the next. */
 const STEPS = 150;
 const EACH = 40;
 /** From where to where, of what drives the tube; what is known to jam and what is known to let go lie between. */
@@ -20,8 +21,8 @@ const WAYS: Record<Welcome["control"], [Steered, number, number]> = {
 export class Sweep {
   private timer = 0;
 
-  /** `samples` tells how many the run has taken; `ended` is called when it comes back, and when it is stopped. */
-  constructor(private readonly connection: Connection, private readonly samples: () => number, private readonly ended: () => void) {}
+  /** `film` is that of the run; `ended` is called when it comes back, and when it is stopped. */
+  constructor(private readonly connection: Connection, private readonly film: () => Film, private readonly ended: () => void) {}
 
   get isGoing(): boolean {
     return this.timer !== 0;
@@ -32,6 +33,14 @@ export class Sweep {
     const range = tube.ranges[parameter];
     if (!range) return;
     const [begin, first] = [performance.now(), this.samples()];
+    this.film().since = first;
+    const now = this.film().rows.at(-1)?.amplitude ?? tube.driven[parameter] ?? from;
+    // A tube that jumps to where the sweep begins shows nothing on the way: it walks there too.
+    const [before, across] = [Math.abs(from - now), Math.abs(to - from)];
+    const whole = before + 2 * across;
+    const placeAt = (way: number) =>
+      way < before ? now + Math.sign(from - now) * way : from + (to - from) * (1 - Math.abs(1 - (way - before) / across));
+    const seconds = (MINUTE * whole) / (2 * across);
     const most = Math.min(SHARE * tube.most_samples, REST * (tube.most_samples - first));
     let last = -1;
     // As fast as the machine computes, so that the flow has the time that a minute gives.
@@ -39,11 +48,10 @@ export class Sweep {
     this.connection.send({ type: "play", playing: true });
     const step = () => {
       // A small tube is so quick that a minute has more samples than are kept.
-      const part = Math.min(1, Math.max((performance.now() - begin) / 1000 / MINUTE, (this.samples() - first) / most));
-      if (part < 1 && part < last + 1 / STEPS) return;
-      last = part;
-      const place = from + (to - from) * (1 - Math.abs(1 - 2 * part));
-      this.connection.send({ type: "steer", parameter, value: Math.min(range[1], Math.max(range[0], place)) });
+      const part = Math.min(1, Math.max((performance.now() - begin) / 1000 / seconds, (this.samples() - first) / most));
+      if (part < 1 && part * whole < last + (2 * across) / STEPS) return;
+      last = part * whole;
+      this.connection.send({ type: "steer", parameter, value: Math.min(range[1], Math.max(range[0], placeAt(last))) });
       if (part === 1) this.end();
     };
     step();
@@ -57,6 +65,11 @@ export class Sweep {
     this.timer = 0;
     this.show();
     this.ended();
+  }
+
+  /** How many the run has taken. */
+  private samples(): number {
+    return this.film().rows.at(-1)?.number ?? 0;
   }
 
   private show(): void {
