@@ -136,6 +136,10 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     await until(page, () => document.getElementById("live").dataset.live === "false");
     await until(page, () => window.viewer.shownFrame === window.viewer.film.frame(3));
     const shown = await page.evaluate(() => window.viewer.shownFrame.clock);
+    // The sliders are where they were then, and the profile is of no more than a period.
+    const driven = await page.evaluate(() => window.viewer.shownFrame.driven.width.toFixed(3));
+    await until(page, (driven) => document.getElementById("number-width").value === driven, driven);
+    assert.match(await page.textContent("#profile-of"), /^(of the frame shown|mean of \d+ frames, over (0|0\.\d+|1) T)$/);
     await page.click("#onward");
     await page.click("#confirm-yes");
     await until(page, (shown) => Math.abs(window.viewer.measured.clock - shown) < 1e-6, shown);
@@ -282,8 +286,8 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
         const { width } = loop.context.measureText(text);
         places.push(loop.context.textAlign === "left" ? [x, x + width] : [x - width, x]);
       };
-      loop.label(loop.x.to, "lets go", "left", "#000");
-      loop.label(loop.x.from, "jams", "right", "#000");
+      loop.label(loop.x.to, "lets go", "left", "#000", "#fff");
+      loop.label(loop.x.from, "jams", "right", "#000", "#fff");
       loop.context.fillText = own;
       return { places, box: loop.box };
     });

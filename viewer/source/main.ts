@@ -5,14 +5,16 @@ import { showField } from "./field-legend";
 import type { Film } from "./film";
 import { History } from "./history";
 import { Host, isHosted } from "./host";
+import { showHeading } from "./heading";
 import { listenToKeys } from "./keys";
 import { element, isStillAsked, keepSaid, listenToDialogs, listenToLook, listenToSizes, say } from "./page";
 import { listenToLooks } from "./looks";
 import { giveLoop } from "./loop";
 import { listenToPointers } from "./pointers";
 import { type Driven, type Frame, type Told, unitOfTime, type Welcome } from "./protocol";
-import { extent, measuredOf } from "./readings";
+import { measuredOf } from "./readings";
 import { isSteady, Readout, showGrain } from "./readout";
+import { Playback } from "./playback";
 import { insteadOfLoop } from "./plots";
 import { Recording } from "./recording";
 import { showSaved } from "./saved";
@@ -32,8 +34,7 @@ const CHARTS = 120;
 class Page {
   private tube: Welcome | null = null;
   private scene: Scene | null = null;
-  /** What is shown: a run that goes on, or a recording. */
-  private film: Film = new History();
+  private readonly playback = new Playback();
   private readonly connection: Connection;
   /** The engine in the page, where it computes the tube itself. */
   private readonly engine: Engine | null = null;
@@ -45,16 +46,6 @@ class Page {
   /** Whether the tube that comes is to be swept there and back. */
   private sweeps = false;
   private readonly work = new Work();
-  /** Number of the frame that is shown; the newest where it is null, which no recording has. */
-  private cursor: number | null = null;
-  /** Whether kept frames are played from the cursor on. */
-  private replaying = false;
-  /** Periods a second at which a recording is played; every frame for one picture where it is null. */
-  private speed: number | null = 1;
-  /** Time in periods to which a recording was played. */
-  private played = 0;
-  /** Frames from one picture to the next. */
-  private apart = 1;
   private ticked = 0;
   private shownFrame: Frame | null = null;
   private riding = false;
@@ -86,7 +77,7 @@ class Page {
       eye: this.scene?.eye ?? [], middle: this.scene?.middle ?? 0, field: this.field, wall: this.scene?.wall ?? WALLS[0],
       clock: this.shownFrame?.clock ?? 0, playing: this.shownFrame?.playing ?? false,
     }));
-    this.sweep = new Sweep(this.connection, () => this.film.rows.at(-1)?.number ?? 0, () => this.connection.send({ type: "play", playing: false }));
+    this.sweep = new Sweep(this.connection, () => this.film, () => this.connection.send({ type: "play", playing: false }));
     if (new URLSearchParams(location.hash.slice(1)).has("embed")) document.body.dataset.embed = "true";
     if (alone) element("tubes").replaceChildren(choice(wanted(), (tube) => this.openTube(tube)));
     listenToChapters((chapter) => this.begin(chapter));
@@ -118,7 +109,7 @@ class Page {
   private lost(reason: string): void {
     document.body.dataset.lost = "true";
     this.sweep.end();
-    this.replaying &&= this.film instanceof History;
+    if (this.film instanceof Recording) this.playback.isOn = false;
     element("play").setAttribute("aria-pressed", String(this.playing()));
     this.chartsStale = true;
     if (!this.tube) element("facts").textContent = "not connected";
@@ -131,16 +122,7 @@ class Page {
     this.tube = tube;
     this.open(tube);
     this.stage(tube);
-    document.title = `${tube.title} – peristalsis`;
-    element("title").textContent = tube.title;
-    const [ends, stands] = [tube.open ? "open ends" : "periodic", tube.unit_period === null];
-    element("facts").textContent =
-      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${stands ? "standing " : ""}${tube.waves === 1 ? "wave" : "waves"}, ${ends} · ${tube.control} control${extent(tube)}`;
-    document.body.dataset.stands = String(stands);
-    element("direction-name").textContent = stands ? "outlet" : "wave";
-    element("direction").hidden = stands && !tube.open;
-    for (const option of element<HTMLSelectElement>("speed").options)
-      if (option.value) option.textContent = `${option.value} ${unitOfTime(tube)}/s`;
+    showHeading(tube);
     this.sliders.make(tube);
     showWithin(tube);
     this.contactsWanted();
@@ -174,14 +156,9 @@ class Page {
   /** The film of a run or of a recording, from its begin. */
   private open(tube: Welcome): void {
     const { recorded, rows } = tube;
-    if (recorded) {
-      this.film = new Recording(recorded.clocks, (number) => this.connection.send({ type: "frame", number }));
-      this.cursor = this.asked.jump ? Math.max(0, this.film.until(this.asked.jump)) : Math.min(this.cursor ?? 0, recorded.clocks.length - 1);
-      this.played = recorded.clocks[this.cursor];
-      element<HTMLInputElement>("time").max = String(Math.max(1, recorded.clocks.length - 1));
-    } else {
-      this.film = new History();
-    }
+    const film = recorded ? new Recording(recorded.clocks, (number) => this.connection.send({ type: "frame", number })) : new History();
+    this.playback.open(film, this.asked.jump);
+    if (recorded) element<HTMLInputElement>("time").max = String(Math.max(1, film.count - 1));
     this.film.addRows(rows);
     this.readout.spaceTime = new SpaceTime();
     this.shownFrame = null;
@@ -206,103 +183,54 @@ class Page {
     this.film.add(frame);
     this.readout.spaceTime.see(frame, this.tube);
     if (frame.past) return;
-    if (epoch !== undefined && epoch !== frame.epoch) this.cursor = null;
+    if (epoch !== undefined && epoch !== frame.epoch) this.playback.cursor = null;
     // Also where the run has stopped by itself; what the server said of it stays until the run goes on.
     if (playing && !frame.playing) this.sweep.end();
     if (frame.ended !== (ended ?? false)) keepSaid(frame.ended);
     if (typeof this.asked.clock === "number") {
       const index = this.film.at(this.asked.clock);
-      if (index < this.film.count - 1) this.cursor = index;
+      if (index < this.film.count - 1) this.playback.cursor = index;
       delete this.asked.clock;
     }
-    if (this.cursor === null) this.shownFrame = null;
     element<HTMLInputElement>("time").max = String(Math.max(1, this.film.count - 1));
     element("play").setAttribute("aria-pressed", String(this.playing()));
   }
 
-  private playing(): boolean {
-    if (this.cursor !== null) return this.replaying;
-    return !document.body.dataset.lost && this.newest()?.playing === true;
+  /** What is shown: a run that goes on, or a recording. */
+  private get film(): Film {
+    return this.playback.film;
   }
 
   /** The last frame that was computed; none of a recording. */
   private newest(): Frame | undefined {
-    return this.film instanceof History ? this.film.newest : undefined;
+    return this.playback.newest;
   }
 
-  private shown(): number {
-    return this.cursor ?? this.film.count - 1;
+  private playing(): boolean {
+    if (this.playback.cursor !== null) return this.playback.isOn;
+    return !document.body.dataset.lost && this.newest()?.playing === true;
   }
 
-  /** To the newest frame, or the last of a recording. */
   private goLive(): void {
-    if (this.film instanceof Recording) {
-      this.scrub(this.film.count - 1);
-      return;
-    }
-    this.cursor = null;
-    this.replaying = false;
-    this.shownFrame = null;
+    this.playback.goLive();
     this.chartsStale = true;
   }
 
   private play(): void {
-    if (this.cursor === null) {
-      this.connection.send({ type: "play", playing: !this.playing() });
-    } else {
-      if (this.film instanceof Recording && this.cursor >= this.film.count - 1) this.scrub(0);
-      this.replaying = !this.replaying;
-    }
+    if (this.playback.cursor === null) this.connection.send({ type: "play", playing: !this.playing() });
+    else this.playback.toggle();
     this.chartsStale = true;
   }
 
   private scrub(index: number): void {
     if (this.newest()?.playing) this.connection.send({ type: "play", playing: false });
-    const last = this.film.count - 1;
-    this.replaying = false;
-    if (this.film instanceof Recording) {
-      this.cursor = Math.min(last, Math.max(0, index));
-      this.played = this.film.clock(this.cursor);
-      this.apart = 1;
-    } else {
-      this.cursor = index >= last ? null : Math.max(0, index);
-      this.shownFrame = null;
-    }
+    this.playback.scrub(index);
     this.chartsStale = true;
   }
 
   private step(direction: number): void {
-    if (direction > 0 && this.cursor === null) this.connection.send({ type: "step" });
-    else this.scrub(this.shown() + direction);
-  }
-
-  /** Plays a recording on; time waits for a frame that has not come yet. */
-  private playOn(film: Recording, seconds: number): void {
-    if (this.replaying && this.cursor !== null) {
-      const last = film.count - 1;
-      const until = this.played + (this.speed ?? 0) * seconds;
-      const aim = this.speed === null ? Math.min(last, this.cursor + 1) : Math.max(this.cursor, film.until(until));
-      if (aim > this.cursor) this.apart = aim - this.cursor;
-      if (aim === this.cursor || film.frame(aim) || film.isLost(aim)) {
-        this.played = this.speed === null ? film.clock(aim) : until;
-        if (aim !== this.cursor) this.chartsStale = true;
-        this.cursor = aim;
-        if (aim === last) this.replaying = false;
-      } else {
-        film.want(aim, this.apart);
-        return;
-      }
-    }
-    film.want(this.shown(), this.replaying ? this.apart : 1);
-  }
-
-  /** Plays the kept frames of a run on. */
-  private replay(): void {
-    if (!this.replaying || this.cursor === null) return;
-    this.cursor += 1;
-    this.shownFrame = null;
-    this.chartsStale = true;
-    if (this.cursor >= this.film.count - 1) this.goLive();
+    if (direction > 0 && this.playback.cursor === null) this.connection.send({ type: "step" });
+    else this.scrub(this.playback.shown + direction);
   }
 
   private tick(now: number): void {
@@ -316,12 +244,11 @@ class Page {
 
   /** Draws what is new. */
   private picture(now: number, took: number): void {
-    const { scene, tube, film } = this;
+    const { scene, tube, film, playback } = this;
     if (!tube || film.count === 0) return;
-    if (film instanceof Recording) this.playOn(film, Math.min(0.25, took / 1000));
-    else this.replay();
+    playback.advance(Math.min(0.25, took / 1000));
     // A recorded frame that has not come leaves the one before in the picture.
-    const frame = film.frame(this.shown()) ?? this.shownFrame;
+    const frame = film.frame(playback.shown) ?? this.shownFrame;
     if (!frame) return;
     if (frame !== this.shownFrame) {
       if (scene) {
@@ -332,6 +259,7 @@ class Page {
       }
       this.rode = frame.period;
       this.shownFrame = frame;
+      this.chartsStale = true;
     }
     scene?.draw(ink(), took);
     if (this.chartsStale && now - this.chartsDrawn > CHARTS) {
@@ -342,10 +270,10 @@ class Page {
   }
 
   private showReadout(frame: Frame, tube: Welcome): void {
-    const { film, scene, field, chapter } = this;
+    const { film, playback, scene, field, chapter } = this;
     const newest = this.newest();
-    const speed = tube.recorded ? this.speed : (newest ?? frame).speed;
-    const [index, playing, live] = [this.shown(), this.playing(), this.cursor === null];
+    const speed = tube.recorded ? playback.speed : (newest ?? frame).speed;
+    const [index, playing, live] = [playback.shown, this.playing(), playback.cursor === null];
     this.readout.show({ frame, index, newest, film, tube, scene, field, playing, live, speed, chapter }, this.ticked);
     this.showLegend();
   }
@@ -372,7 +300,7 @@ class Page {
     this.chapter = chapter;
     this.sweep.end();
     const isWide = this.tube?.control === "strain" && this.tube.waves <= 4;
-    const tube = { jams: isWide ? "" : "wide", remembers: isWide ? "" : "wide", friction: "friction: back flow", begins: "long" }[chapter];
+    const tube = { jams: isWide ? "" : "wide", remembers: isWide ? "" : "wide", friction: "friction, flowing back", begins: "long" }[chapter];
     if (tube) this.openTube(named(tube));
     this.goLive();
     if (chapter === "jams") {
@@ -418,7 +346,7 @@ class Page {
     };
     element("save").onclick = () => this.tube?.recorded === null && this.connection.send({ type: "save" });
     element("help").onclick = () => element<HTMLDialogElement>("keys").showModal();
-    element("onward").onclick = () => void this.goOn(this.film.clock(this.shown()), "Go on from here?", "go on from here");
+    element("onward").onclick = () => void this.goOn(this.film.clock(this.playback.shown), "Go on from here?", "go on from here");
     element("again").onclick = () => void this.goOn(0, "Begin anew?", "from the start");
     element("sweep").onclick = () => (this.sweep.isGoing ? this.sweep.end() : this.tube && !this.newest()?.ended && this.sweep.begin(this.tube));
     listenToShare(this.address, () => this.tube?.title ?? "tube", () => this.scene?.touch());
@@ -430,7 +358,7 @@ class Page {
     const speed = element<HTMLSelectElement>("speed");
     speed.onchange = () => {
       const periods_per_second = speed.value === "" ? null : Number(speed.value);
-      if (this.film instanceof Recording) this.speed = periods_per_second;
+      if (this.film instanceof Recording) this.playback.speed = periods_per_second;
       else this.connection.send({ type: "speed", periods_per_second });
     };
     listenToLook(() => this.redraw());

@@ -2,14 +2,16 @@ import { type Chart, type Entry, type Ink, written } from "./charts";
 import { colourAt, type Field, inWave, speedOf, stops } from "./fields";
 import type { Film } from "./film";
 import { insideOf } from "./inside";
-import { type Frame, type Row, timeAxis, type Welcome } from "./protocol";
+import { type Frame, type Row, timeAxis, unitOfTime, type Welcome } from "./protocol";
 
-/** Frames that a profile is averaged over, and looks at grains after which fewer frames do. */
+/** Frames and periods that a profile is averaged over at most, and looks at grains after which fewer frames do. */
 const AVERAGED = 16;
+const PERIODS = 1;
 const LOOKS = 12000;
-const BINS = 24;
+/** Bins of a profile: as many, where there are enough grains for that. */
+const BINS = { least: 6, most: 24 };
 /** Looks at grains that a mean velocity is taken of, at least. */
-const FEWEST = 12;
+const FEWEST = 8;
 
 /** J/Jmax against time, with the time that is shown. */
 export function drawFlow(chart: Chart, film: Film, tube: Welcome, clock: number, colours: Ink): void {
@@ -26,7 +28,7 @@ export function drawFlow(chart: Chart, film: Film, tube: Welcome, clock: number,
     { text: "each sample", colour: colours.line },
     { text: "mean over the period before", colour: colours.accent },
   ];
-  if (newtonian.length > 0) legend.push({ text: "Newtonian fluid", colour: colours.faint, dash: [1, 3] });
+  if (newtonian.length > 0) legend.push({ text: "Newtonian fluid without load", colour: colours.faint, dash: [1, 3] });
   if (record.length > 0) legend.push({ text: "computed before", colour: colours.wall, dash: [4, 3] });
   chart.begin([0, last], [least, most], [timeAxis(tube), "J / Jmax"], colours, { legend });
   chart.curve([[0, 0], [last, 0]], colours.faint, 1);
@@ -82,20 +84,29 @@ export function drawInsteadOfLoop(chart: Chart, film: Film, tube: Welcome, clock
   return true;
 }
 
-/** Volume fraction and axial velocity in the wave frame, under the outline of the tube. */
-export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welcome, colours: Ink): void {
+/** The frames that a profile is averaged over: they end with this one, and are of one period where the wave runs. */
+function framesOfProfile(film: Film, shown: number, tube: Welcome): Frame[] {
   const grains = film.frame(shown)?.grains ?? tube.grains;
   const frames = film.recent(shown, Math.min(AVERAGED, Math.ceil(LOOKS / grains)));
+  const run = frames.at(-1)?.period ?? 0;
+  return frames.filter(({ period }) => run - period < PERIODS);
+}
+
+/** Volume fraction and axial velocity in the wave frame, under the outline of the tube; answers what they are means of. */
+export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welcome, colours: Ink): string {
+  const frames = framesOfProfile(film, shown, tube);
   const last = frames.at(-1);
   const standing = last?.wave_speed === 0 ? speedOf(last) : null;
-  const number = new Float64Array(BINS);
-  const volume = new Float64Array(BINS);
-  const velocity = new Float64Array(BINS);
+  const looks = frames.reduce((sum, frame) => sum + frame.grains, 0);
+  const bins = Math.min(BINS.most, Math.max(BINS.least, Math.floor(looks / (2 * FEWEST))));
+  const number = new Float64Array(bins);
+  const volume = new Float64Array(bins);
+  const velocity = new Float64Array(bins);
   for (const frame of frames) {
     const isInside = insideOf(frame, tube);
     for (let i = 0; i < frame.grains; i++) {
       if (!isInside(i)) continue;
-      const bin = Math.min(BINS - 1, Math.floor(BINS * inWave(frame, tube, frame.position[3 * i + 2])));
+      const bin = Math.min(bins - 1, Math.floor(bins * inWave(frame, tube, frame.position[3 * i + 2])));
       number[bin] += 1;
       volume[bin] += (Math.PI / 6) * frame.diameter[i] ** 3;
       velocity[bin] += (tube.heading * frame.velocity[3 * i + 2]) / (standing ?? (frame.wave_speed || NaN));
@@ -109,8 +120,9 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
     { text: "volume fraction φ", colour: colours.text, dash: [2, 3] },
     { text: "tube", colour: colours.wall },
   ];
-  chart.begin([0, 1], [least, 1.3], ["position (z − ct)/λ", ""], colours, { legend });
-  const middle = (bin: number) => (bin + 0.5) / BINS;
+  const position = tube.unit_period === null ? "position z/λ" : "position (z − ct)/λ";
+  chart.begin([0, 1], [least, 1.3], [position, ""], colours, { legend });
+  const middle = (bin: number) => (bin + 0.5) / bins;
   // The tube's outline above and below the middle of the chart.
   const radius = outline(film.frame(shown) ?? frames.at(-1), tube);
   const centre = 0.5 * (least + 1.3);
@@ -130,10 +142,12 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   // Of the clear tube, inside the spheres of the wall.
   const places = radius.length - 1;
   const clear = (bin: number) => radius[Math.round(middle(bin) * places)] - 0.5 * tube.wall_sphere_diameter;
-  const each = (tube.wavelength / BINS) * tube.waves * frames.length * Math.PI;
+  const each = (tube.wavelength / bins) * tube.waves * frames.length * Math.PI;
   chart.curve(Array.from(volume, (sum, bin) => [middle(bin), sum / (each * clear(bin) ** 2)]), colours.text, 1.5, [2, 3]);
   chart.curve([[0, 0], [1, 0]], colours.faint, 1);
   chart.curve(means.map((mean, bin) => [middle(bin), mean]), colours.accent, 2);
+  if (!last || frames.length < 2) return "of the frame shown";
+  return `mean of ${frames.length} frames, over ${written(last.clock - frames[0].clock, 2)} ${unitOfTime(tube)}`;
 }
 
 /** Radius of the tube at 49 places of the wave. */

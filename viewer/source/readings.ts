@@ -21,8 +21,8 @@ export function factsOfSample({ sample }: Frame, tube: Welcome): Facts {
   return [
     ...(tube.open ? ends : []),
     ["bottleneck w", sample ? `${written(sample.bottleneck)} d` : "–"],
-    ["contacts of a grain Z", sample ? written(sample.contacts) : "–"],
-    ["granular temperature", sample ? `${written(sample.granular_temperature)} m d²/t²` : "–"],
+    ["contacts of a grain Z, escaped too", sample ? written(sample.contacts) : "–"],
+    ["granular temperature, escaped too", sample ? `${written(sample.granular_temperature)} m d²/t²` : "–"],
     ["power of the wall", sample ? `${written(sample.wall_power)} m d²/t³` : "–"],
     ["escaped grains", sample ? String(sample.escaped) : "–"],
     ["energy unaccounted, part", sample ? written(sample.energy_residual ?? NaN, 2) : "–"],
@@ -86,7 +86,7 @@ export function summaryOf(frame: Frame, tube: Welcome, ratio: number): string {
   const { width, force_amplitude } = frame.driven;
   const drive = width !== null ? `width ${written(width)}` : force_amplitude !== null ? `force ${written(force_amplitude)}` : "";
   const flow = Number.isNaN(ratio) ? "" : `flow rate ${written(ratio, 2)} of the largest, `;
-  return `${frame.clock.toFixed(1)} ${inWords(tube)}: ${flow}${drive}${frame.playing ? "" : ", at rest"}`;
+  return `${frame.clock.toFixed(1)} ${inWords(tube)}: ${flow}${drive}${frame.playing ? "" : ", paused"}`;
 }
 
 /** What tests look at of a frame. */

@@ -2,7 +2,7 @@ import { Chart, ink, written } from "./charts";
 import { FIELDS, partsOf } from "./fields";
 import type { Film } from "./film";
 import { drawFlat } from "./flat";
-import { acrossOf, drawLoop, thresholds, wordsOf } from "./loop";
+import { acrossOf, drawLoop, wordsOf } from "./loop";
 import { element, fill } from "./page";
 import { drawFlow, drawInsteadOfLoop, drawMap, drawProfile } from "./plots";
 import { type Frame, unitOfTime, type Welcome } from "./protocol";
@@ -56,7 +56,7 @@ export class Readout {
     drawFlow(charts.flow, film, tube, frame.clock, colours);
     if (!isSteady(film, tube)) this.showLoop(shown);
     else element("loop-figure").hidden = !drawInsteadOfLoop(charts.loop, film, tube, frame.clock, colours);
-    drawProfile(charts.profile, film, index, tube, colours);
+    element("profile-of").textContent = drawProfile(charts.profile, film, index, tube, colours);
     const isLong = tube.waves >= FEWEST_WAVES && !tube.recorded;
     element("space-time-figure").hidden = !isLong;
     const lightness = scene?.lightness ?? false;
@@ -69,15 +69,15 @@ export class Readout {
   }
 
   private showLoop({ film, tube, frame, chapter }: Shown): void {
-    drawLoop(this.charts.loop, film, tube, frame, ink());
-    const across = acrossOf(tube, frame);
-    const found = wordsOf(thresholds(film.rows, across), across);
+    const found = wordsOf(drawLoop(this.charts.loop, film, tube, frame, ink()), acrossOf(tube, frame));
     element("found").textContent = found;
     if (chapter === "jams" || chapter === "remembers") tell(found);
   }
 
   private showNumbers({ frame, index, newest, film, tube, scene, playing, live, speed, chapter }: Shown, now: number): void {
-    const ratio = film.rows[film.rowAt(frame.clock)]?.average ?? NaN;
+    // The first frame of a recording is before the first sample.
+    const row = tube.recorded ? Math.max(0, film.rowAt(frame.clock)) : film.rowAt(frame.clock);
+    const ratio = film.rows[row]?.average ?? NaN;
     element("ratio").textContent = Number.isNaN(ratio) ? "–" : ratio.toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "");
     if (chapter === "friction" && frame.clock > 1) tell(ratio < -0.01 ? "The grains flow against the wave." : `J/Jmax = ${written(ratio, 2)}`);
     if (chapter === "begins") tell(this.spaceTime.words());
@@ -91,8 +91,8 @@ export class Readout {
     const select = element<HTMLSelectElement>("speed");
     if (select !== document.activeElement) select.value = speed === null ? "" : String(speed);
     this.showPace(newest, tube, speed, now);
-    const driven = newest ?? frame;
-    this.sliders.show(driven.driven, driven.aims);
+    // While one looks back, what drove the run then.
+    this.sliders.show(frame.driven, live ? (newest ?? frame).aims : frame.driven);
     const facts = factsOfSample(frame, tube);
     fill(element("numbers"), tube.recorded ? [...factsOfDrive(frame.driven), ...facts] : facts);
     fill(element("warnings"), frame.warnings.map(({ key, message }) => [key, message]));
