@@ -120,8 +120,8 @@ export interface Entry {
   text: string;
   colour: string;
   dash?: number[];
-  /** A mark in place of a line, filled or not. */
-  mark?: "full" | "open";
+  /** A mark in place of a line: a dot, filled or not, or the colour of an area. */
+  mark?: "full" | "open" | "area";
 }
 
 /** A canvas with two axes. */
@@ -192,7 +192,14 @@ export class Chart {
       if (x + room > width && x > 2) [x, y] = [2, y + 15];
       context.strokeStyle = context.fillStyle = colour;
       context.lineWidth = 2;
-      if (mark) {
+      if (mark === "area") {
+        context.beginPath();
+        context.rect(x, y - 5, 18, 10);
+        context.fill();
+        context.strokeStyle = colours.faint;
+        context.lineWidth = 1;
+        context.stroke();
+      } else if (mark) {
         context.beginPath();
         context.arc(x + 9, y, 3.2, 0, 2 * Math.PI);
         if (mark === "full") context.fill();
@@ -253,15 +260,21 @@ export class Chart {
     context.stroke();
   }
 
-  /** Words beside an upright line, below the top; on its other side where there is no room. */
-  label(x: number, text: string, side: "left" | "right", colour: string): void {
+  /** Words beside an upright line, below the top, over curves; on its other side where there is no room. */
+  label(x: number, text: string, side: "left" | "right", colour: string, back: string): void {
     const { context } = this;
-    context.fillStyle = colour;
     const [place, room] = [this.x.at(x), context.measureText(text).width + 4];
     const isRightOf = side === "left" ? place + room <= this.box.left + this.box.width : place - room < this.box.left;
     context.textAlign = isRightOf ? "left" : "right";
     context.textBaseline = "middle";
-    context.fillText(text, place + (isRightOf ? 4 : -4), this.box.top + 0.35 * this.box.height);
+    const height = this.box.top + 0.35 * this.box.height;
+    // Curves behind the words would make them hard to read.
+    context.beginPath();
+    context.rect(isRightOf ? place + 2 : place - room, height - 7, room - 2, 14);
+    context.fillStyle = back;
+    context.fill();
+    context.fillStyle = colour;
+    context.fillText(text, place + (isRightOf ? 4 : -4), height);
   }
 
   upright(x: number, colour: string): void {

@@ -8,6 +8,22 @@ const NAMES: Record<Steered, { name: string; digits: number }> = {
   friction: { name: "Friction <i>μ</i>", digits: 2 },
 };
 
+/** Steps of a slider, about: 1, 2 or 5 of a power of ten. */
+const STEPS = 400;
+
+function stepOf([from, to]: [number, number]): number {
+  const rough = (to - from) / STEPS;
+  const power = Math.floor(Math.log10(rough));
+  const digit = [1, 2, 5, 10].find((it) => it * 10 ** power >= rough) ?? 10;
+  return Number(`${digit}e${power}`);
+}
+
+/** Puts a slider to a value, which may lie between its steps, and says it as the number beside it does. */
+function put(slider: HTMLInputElement, value: number, digits: number): void {
+  slider.value = String(value);
+  slider.setAttribute("aria-valuetext", value.toFixed(digits));
+}
+
 /** The sliders that steer a run. */
 export class Sliders {
   constructor(private readonly steered: (parameter: Steered, value: number) => void) {}
@@ -24,7 +40,7 @@ export class Sliders {
       const [number, slider] = label.querySelectorAll("input");
       slider.min = String(range[0]);
       slider.max = String(range[1]);
-      slider.step = key === "width" ? "0.005" : String((range[1] - range[0]) / 400);
+      slider.step = String(stepOf(range));
       slider.setAttribute("aria-label", label.textContent ?? key);
       slider.id = `slider-${key}`;
       number.id = `number-${key}`;
@@ -32,7 +48,7 @@ export class Sliders {
       const steer = (value: number) => {
         const within = Math.min(range[1], Math.max(range[0], value));
         known = number.value = within.toFixed(digits);
-        slider.value = String(within);
+        put(slider, within, digits);
         this.steered(key, within);
       };
       slider.oninput = () => steer(slider.valueAsNumber);
@@ -65,8 +81,9 @@ export class Sliders {
       const low = Number(slider.min);
       slider.style.setProperty("--now", `${(100 * (value - low)) / (Number(slider.max) - low)}%`);
       const aim = aims[key] ?? value;
-      if (!slider.matches(":active")) slider.value = String(aim);
-      if (number !== document.activeElement) number.value = aim.toFixed(NAMES[key].digits);
+      const { digits } = NAMES[key];
+      if (!slider.matches(":active")) put(slider, aim, digits);
+      if (number !== document.activeElement) number.value = aim.toFixed(digits);
     }
   }
 }

@@ -52,14 +52,16 @@ export class SpaceTime {
   }
 
   draw(chart: Chart, tube: Welcome, lightness: boolean, colours: Ink): void {
+    const scale = stops(FIELDS.axial, lightness);
     const end = Math.max(this.looks.at(-1)?.clock ?? 0, 2);
     chart.begin([0, end], [0.5, tube.waves + 0.5], [timeAxis(tube), "wave"], colours, {
       legend: [
-        { text: "against the wave", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.1)) },
-        { text: "jammed: along it at c", colour: css(colourAt(stops(FIELDS.axial, lightness), 0.97)) },
+        { text: "against the wave", colour: css(colourAt(scale, 0.1)), mark: "area" },
+        { text: "no flow", colour: css(colourAt(scale, 0.5)), mark: "area" },
+        { text: "jammed: along it at c", colour: css(colourAt(scale, 0.97)), mark: "area" },
       ],
     });
-    this.paint(tube.waves, stops(FIELDS.axial, lightness));
+    this.paint(tube.waves, scale);
     const { context, x, box } = chart;
     context.imageSmoothingEnabled = false;
     this.looks.forEach(({ clock }, k) => {

@@ -8,7 +8,10 @@ export type Chapter = "jams" | "remembers" | "friction" | "begins";
 export function listenToChapters(act: (chapter: Chapter) => void): void {
   for (const button of document.querySelectorAll<HTMLButtonElement>("[data-chapter]"))
     button.onclick = () => {
-      for (const card of document.querySelectorAll(".chapter")) card.classList.toggle("now", card.contains(button));
+      for (const card of document.querySelectorAll(".chapter")) {
+        card.classList.toggle("now", card.contains(button));
+        card.querySelector(".said")?.replaceChildren();
+      }
       act(button.dataset.chapter as Chapter);
     };
 }

@@ -2,13 +2,13 @@ import type { Wanted } from "./connection";
 
 /** Tubes to begin with, where the page computes them itself. */
 const TUBES: (Wanted & { name: string })[] = [
-  { name: "wide: it slips back", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.9"], speed: 3 },
-  { name: "narrow: it jams", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.6"], speed: 3 },
+  { name: "wide, slipping back", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.9"], speed: 3 },
+  { name: "narrow, jamming", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.6"], speed: 3 },
   { name: "fine lattice", preset: "frictionless-fine", settings: ["tube.waves=4"], speed: 3 },
-  { name: "long: where a jam begins", preset: "frictionless", settings: ["tube.waves=12", "drive.width=2.75"], speed: 10 },
+  { name: "long, jamming wave by wave", preset: "frictionless", settings: ["tube.waves=12", "drive.width=2.75"], speed: 10 },
   { name: "friction, soft wall", preset: "frictional", settings: ["tube.waves=2"], speed: 0.3 },
   {
-    name: "friction: back flow", preset: "frictional",
+    name: "friction, flowing back", preset: "frictional",
     settings: ["tube.waves=2", "initial.state=rest", "drive.force_amplitude=0.002"], speed: 0.3,
   },
 ];
@@ -35,6 +35,6 @@ export function choice(now: Wanted, open: (tube: Wanted) => void): HTMLElement {
   TUBES.forEach((tube, k) => select.add(new Option(tube.name, String(k), false, is(tube, now))));
   if (!TUBES.some((tube) => is(tube, now))) select.add(new Option(now.preset, "", true, true));
   select.onchange = () => select.value && open(TUBES[Number(select.value)]);
-  label.append("tube ", select);
+  label.append("beginning ", select);
   return label;
 }
