@@ -1,4 +1,4 @@
-import type { Point, Results } from "./results";
+import type { Results } from "./results";
 
 /** Periods before the transition at which a run is shown. */
 const JUMP = 5;
@@ -10,6 +10,7 @@ export function firstQuantity({ quantities, study }: Results): string {
     [/transition time|lifetime|time until/, "transition_time"],
     [/pumping/, "pumping_efficiency"],
     [/fluctuation/, "flow_rate_ratio_variance"],
+    [/discharge/, "discharge_rate"],
   ];
   for (const [words, name] of about) if (words.test(title) && quantities.some((it) => it.name === name)) return name;
   return quantities.at(0)?.name ?? "";
@@ -30,11 +31,8 @@ export function firstFamily(results: Results, x: string): string {
   return most && most.number > 1 ? most.name : "none";
 }
 
-/** What the address of a run of a point says of where there is something to see: shortly before the first transition. */
-export function momentOf(results: Results | null, chosen: Point | null): string {
-  if (!results || !chosen) return "";
-  const times = chosen.rows.map((row) => results.number("transition_time", row)).filter(Number.isFinite);
-  const period = results.periodOf(chosen.rows[0]);
-  if (times.length === 0 || !Number.isFinite(period)) return "";
-  return `#jump=${Math.max(0, Math.min(...times) / period - JUMP).toFixed(2)}`;
+/** What the address of a row's run says of where there is something to see: shortly before its transition. */
+export function momentOf(results: Results, row: number): string {
+  const moment = results.number("transition_time", row) / results.periodOf(row) - JUMP;
+  return Number.isFinite(moment) ? `#jump=${Math.max(0, moment).toFixed(2)}` : "";
 }

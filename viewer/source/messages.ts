@@ -82,7 +82,7 @@ export type Within = {
   study: string,
   /** Number of the run in the addresses of pages. */
   number: number,
-  /** The runs of the same point, this one among them. */
+  /** The finished runs of the same point, and this one. */
   siblings: Array<Sibling>,
 };
 
@@ -257,14 +257,15 @@ export type Study = {
   counts: { [key in string]: number },
   /** Whether there may be more rows later. */
   growing: boolean,
+  /** The folder of its runs; null for a table alone. */
+  store: string | null,
 };
 
 /** A column of its table. */
 export type Column = {
   name: string,
-  /** Words or symbol at an axis. */
-  label: string | null,
-  unit: string,
+  /** Words or symbol at an axis, with the unit. */
+  label: string,
   description: string,
   /** NaN, a missing number, is null. */
   values: Array<number | string | boolean | null>,

@@ -46,13 +46,6 @@ const PARAMETERS = [
   "time_step",
 ];
 
-/** Labels of keys that are no columns of their own. */
-const KEYS: Record<string, string> = {
-  wave_speed: "wave speed c", kinetic_friction: "friction μ", static_friction: "static friction μₛ",
-  axial: "axial tether of the wall", end: "end of the schedule / T", from: "schedule from", to: "schedule to", form: "form of the schedule",
-  periods: "periods of the run", late_fraction: "late part of the run", transition_threshold: "threshold of J/Jmax",
-};
-
 /** Columns that are asked for most. */
 const QUANTITIES = [
   "flow_rate_ratio", "transition_time", "granular_temperature", "contacts", "flow_rate", "wall_power",
@@ -66,9 +59,6 @@ const TUBE = ["tube.radius", "tube.wavelength", "tube.spheres_per_ring", "tube.r
 /** Columns of numbers that are neither. */
 const NEITHER = new Set(["replicate", "seed", "grains", "transition_threshold", "steps"]);
 
-const words = (name: string) =>
-  (name.split(".").at(-1) ?? name).replace(/^transition_time_(\d)0$/, "transition time at J/Jmax = 0.$1").replaceAll("_", " ");
-
 const order = (one: Value, other: Value) =>
   typeof one === "number" && typeof other === "number" ? one - other : String(one).localeCompare(String(other));
 
@@ -79,7 +69,7 @@ export class Results {
   readonly starts: string[];
   readonly rows: number;
   private readonly columns: Map<string, (number | string | boolean | null)[]>;
-  private readonly labels: Map<string, string | null>;
+  private readonly labels: Map<string, string>;
 
   constructor(readonly study: Study) {
     this.columns = new Map(study.columns.map((column) => [column.name, column.values]));
@@ -94,11 +84,7 @@ export class Results {
     );
     const rank = (name: string) => (QUANTITIES.includes(name) ? QUANTITIES.indexOf(name) : QUANTITIES.length);
     this.quantities = measured
-      .map(({ name, label, unit, description }) => ({
-        name,
-        label: label ?? (unit && unit !== "1" ? `${words(name)} / ${unit.includes("/") ? `(${unit})` : unit}` : words(name)),
-        description,
-      }))
+      .map(({ name, label, description }) => ({ name, label, description }))
       .sort((one, other) => rank(one.name) - rank(other.name));
     const starts = new Set((this.columns.get("initial_state") ?? []).map(String));
     this.starts = [...starts].sort().reverse();
@@ -109,7 +95,7 @@ export class Results {
     const names = keys.length > 0 ? keys : PARAMETERS;
     const all = names.filter((name) => this.columns.has(name)).map((name) => ({
       name,
-      label: this.labels.get(name) ?? KEYS[name.split(".").at(-1) ?? name] ?? words(name),
+      label: this.labels.get(name) ?? name,
       values: this.valuesOf(name, this.all()),
     }));
     return all.filter(({ values }) => values.length > 1);
@@ -197,7 +183,6 @@ export class Results {
       return Number.isNaN(value) ? Infinity : Math.abs(value - point.value);
     };
     const watchable = point.rows.filter((row) => this.study.runs[row] !== null);
-    const nearest = watchable.toSorted((one, other) => away(one) - away(other)).at(0);
-    return nearest === undefined ? null : this.study.runs[nearest];
+    return watchable.toSorted((one, other) => away(one) - away(other)).at(0) ?? null;
   }
 }

@@ -1,15 +1,16 @@
 import { type Choice, keep, read, untouched } from "./choice";
-import { firstFamily, firstQuantity, momentOf } from "./first";
+import { momentOf } from "./first";
 import { Chart, ink, written } from "./charts";
 import { type Curve, curvesOf, drawCurves, extent } from "./curves";
 import { showFigures } from "./figures";
 import { across, drawHeat, type Scale } from "./heat";
 import { showMarks, showScale } from "./legend";
 import type { List, Study } from "./messages";
-import { element, fill, isDark, listenToLook, options, say } from "./page";
+import { element, isDark, listenToLook, options, say } from "./page";
 import { beside, type Panel, placeOf, pointAt, put } from "./panel";
-import { type Parameter, type Point, Results, type Value } from "./results";
-import { valueOf } from "./words";
+import { factsOf, showPoint, showTip } from "./point";
+import { type Point, Results, type Value } from "./results";
+import { fixable, numeric, settle } from "./settle";
 
 /** Milliseconds from one look for new rows to the next, while runs are to come and when none is known to be. */
 const EACH = { growing: 4000, done: 15000 };
@@ -88,72 +89,12 @@ class StudyPage {
 
   private take(results: Results): void {
     this.results = results;
-    this.settle();
     this.show();
-  }
-
-  /** Makes the choice one that the study has. */
-  private settle(): void {
-    const { results, choice } = this;
-    if (!results) return;
-    const numbers = this.numeric();
-    const has = (name: string, among: { name: string }[]) => among.some((it) => it.name === name);
-    // What drives the transition goes across, else what was varied most.
-    const drives = ({ name, values }: Parameter) => values.length > 2 && /(^|\.)(width|force_amplitude)$/.test(name);
-    const weight = (it: Parameter) => it.values.length + (drives(it) ? 1e6 : 0);
-    const most = numbers.toSorted((one, other) => weight(other) - weight(one));
-    if (!has(choice.value, results.quantities)) {
-      choice.value = firstQuantity(results);
-      choice.logarithmic = choice.value.startsWith("transition_time");
-    }
-    if (!has(choice.x, numbers)) choice.x = most.at(0)?.name ?? "";
-    const others = results.parameters.filter(({ name }) => name !== choice.x);
-    if (!has(choice.other, others) && choice.other !== "none") choice.other = firstFamily(results, choice.x);
-    if (choice.view === "heat" && choice.other === "none") choice.other = others.at(0)?.name ?? "none";
-    if (!results.starts.includes(choice.start)) choice.start = "both";
-    // Of what is neither axis, one value at a time; what follows from the others is not asked.
-    const fixed = new Map<string, Value>();
-    let rows = results.all();
-    for (const { name } of this.fixable()) {
-      const values = results.valuesOf(name, rows);
-      if (values.length < 2 || !this.isOpen(name, rows)) continue;
-      const wanted = choice.fixed.get(name);
-      const value = wanted !== undefined && values.includes(wanted) ? wanted : this.commonest(name, rows, values);
-      fixed.set(name, value);
-      rows = results.where(rows, new Map([[name, value]]));
-    }
-    choice.fixed = fixed;
-  }
-
-  /** Whether rows at one place of both axes differ in this column. */
-  private isOpen(name: string, rows: number[]): boolean {
-    const { results, choice } = this;
-    const seen = new Map<string, Value | null>();
-    return rows.some((row) => {
-      const place = JSON.stringify([results?.value(choice.x, row), results?.value(choice.other, row)]);
-      const value = results?.value(name, row) ?? null;
-      if (!seen.has(place)) seen.set(place, value);
-      return seen.get(place) !== value;
-    });
-  }
-
-  private commonest(name: string, rows: number[], values: Value[]): Value {
-    const count = (value: Value) => this.results?.where(rows, new Map([[name, value]])).length ?? 0;
-    return values.toSorted((one, other) => count(other) - count(one))[0];
-  }
-
-  private numeric(): Parameter[] {
-    return (this.results?.parameters ?? []).filter(({ values }) => values.every((value) => typeof value === "number"));
-  }
-
-  private fixable(): Parameter[] {
-    const { x, other } = this.choice;
-    return (this.results?.parameters ?? []).filter(({ name }) => name !== x && name !== other);
   }
 
   /** Everything anew. */
   private show(): void {
-    this.settle();
+    if (this.results) settle(this.choice, this.results);
     this.showChoices();
     this.showFacts();
     this.regroup();
@@ -176,7 +117,7 @@ class StudyPage {
       return;
     }
     if (!results) return;
-    const { counts, name, growing } = results.study;
+    const { counts, name, growing, store } = results.study;
     const rest = Object.entries(counts).filter(([state]) => state !== "done");
     const states: Record<string, string> = { leased: "being computed", pending: "waiting", checkpointed: "interrupted" };
     const parts = rest.map(([state, count]) => `${count} ${states[state] ?? state}`);
@@ -184,7 +125,7 @@ class StudyPage {
     element("refresh").hidden = !growing;
     element("empty").textContent = results.rows > 0
       ? "No finished run has such a value."
-      : `No run of this study has ended yet. This computes them: peristalsis study run studies/${name}.toml`;
+      : `No run of this study has ended yet. This computes them: peristalsis study run ${store}/study.toml --store ${store}`;
   }
 
   private showChoices(): void {
@@ -195,7 +136,7 @@ class StudyPage {
     element<HTMLSelectElement>("study").value = String(choice.study);
     if (!results) return;
     options("value", results.quantities, choice.value);
-    options("x", this.numeric(), choice.x);
+    options("x", numeric(results), choice.x);
     const none = choice.view === "curves" ? [{ name: "none", label: "none" }] : [];
     options("other", [...results.parameters.filter(({ name }) => name !== choice.x), ...none], choice.other);
     element("other-name").textContent = choice.view === "heat" ? "up" : "family";
@@ -206,7 +147,7 @@ class StudyPage {
     const box = element("fixed");
     box.replaceChildren();
     let rows = results.all();
-    for (const parameter of this.fixable()) {
+    for (const parameter of fixable(results, choice)) {
       const value = choice.fixed.get(parameter.name);
       if (value === undefined) continue;
       const values = results.valuesOf(parameter.name, rows);
@@ -333,67 +274,31 @@ class StudyPage {
     showMarks(box, family?.label ?? value, this.curves(), this.points.some(({ atLeast }) => atLeast));
   }
 
-  /** What a point says, in words. */
-  private facts(point: Point): [string, string][] {
-    const { results, choice } = this;
-    if (!results) return [];
-    const facts: [string, string][] = [[results.parameter(choice.x)?.label ?? choice.x, written(point.x, 4)]];
-    const other = results.parameter(choice.other);
-    if (other && point.other !== null)
-      facts.push([other.label, typeof point.other === "number" ? written(point.other, 4) : point.other]);
-    if (point.start) facts.push(["start", `from ${point.start}`]);
-    facts.push(["replicates", String(point.number)]);
-    if (point.atLeast) facts.push(["without a transition", String(point.censored)]);
-    return facts;
-  }
-
   private showTip(): void {
-    const tip = element("tip");
-    const { chosen, within, results } = this;
-    tip.hidden = !chosen || !within;
-    if (!chosen || !within || !results) return;
-    const place = placeOf(within, chosen);
-    if (!place) {
-      tip.hidden = true;
-      return;
-    }
-    element("tip-value").textContent = valueOf(chosen);
-    fill(element("tip-facts"), this.facts(chosen));
-    const run = results.typical(chosen, this.choice.value);
-    element("tip-open").textContent = run === null ? "the design of this table is not known: its runs cannot be watched" : this.touched ? "tap again to watch its run" : "click to watch its run";
-    put(tip, element("charts"), within, place);
+    const { chosen, within, results, choice } = this;
+    const place = chosen && within && placeOf(within, chosen);
+    element("tip").hidden = !place;
+    if (!place || !results) return;
+    const isKnown = results.typical(chosen, choice.value) !== null;
+    showTip(chosen, factsOf(chosen, results, choice), isKnown ? (this.touched ? "tap again to watch its run" : "click to watch its run") : null);
+    put(element("tip"), element("charts"), within, place);
   }
 
   private showPoint(): void {
     const { chosen, results, choice } = this;
     element("point").hidden = chosen === null;
     element("hint").hidden = chosen !== null;
-    if (!chosen || !results) return;
-    element("point-value").textContent = valueOf(chosen);
-    fill(element("point-facts"), this.facts(chosen));
-    const runs = element("runs");
-    runs.replaceChildren(
-      ...chosen.rows.toSorted((one, other) => results.number("replicate", one) - results.number("replicate", other)).map((row) => {
-        const line = document.createElement("li");
-        const value = results.number(choice.value, row);
-        const text = `run ${Number(results.value("replicate", row) ?? 0) + 1}`;
-        const number = results.study.runs[row];
-        const name = document.createElement(number === null ? "span" : "a");
-        name.textContent = text;
-        if (name instanceof HTMLAnchorElement) name.href = this.address(number ?? 0);
-        const shown = document.createElement("span");
-        shown.textContent = Number.isFinite(value) ? written(value, 4) : "no transition";
-        line.append(name, shown);
-        return line;
-      }),
-    );
+    if (chosen && results) showPoint(chosen, results, choice, (row) => this.address(results, row));
   }
 
-  private readonly address = (run: number) => `study/${this.choice.study}/run/${run}/${momentOf(this.results, this.chosen)}`;
+  private address(results: Results, row: number): string {
+    return `study/${this.choice.study}/run/${results.study.runs[row]}/${momentOf(results, row)}`;
+  }
 
   private watch(point: Point): void {
-    const run = this.results?.typical(point, this.choice.value) ?? null;
-    if (run !== null) location.assign(this.address(run));
+    const { results } = this;
+    const row = results?.typical(point, this.choice.value) ?? null;
+    if (results && row !== null) location.assign(this.address(results, row));
   }
 
   private choose(point: Point | null, panel: Panel | null): void {

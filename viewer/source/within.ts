@@ -9,8 +9,9 @@ export function showWithin({ within }: Welcome): void {
   link.textContent = `← ${within.study}`;
   link.href = `../../../../${sessionStorage.getItem("study") ?? ""}`;
   const siblings = element<HTMLSelectElement>("siblings");
-  const all = within.siblings.map(({ number, replicate }) => new Option(`${replicate + 1} of ${within.siblings.length}`, String(number)));
+  const all = within.siblings.map(({ number, replicate }) => new Option(String(replicate + 1), String(number)));
   siblings.replaceChildren(...all);
   siblings.value = String(within.number);
+  element("siblings-number").textContent = within.siblings.length === 1 ? "the only one" : `one of ${within.siblings.length}`;
   siblings.onchange = () => location.assign(`../${siblings.value}/`);
 }
