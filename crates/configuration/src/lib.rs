@@ -65,7 +65,7 @@ pub use peristalsis_physics::wall::{
 pub use presets::{PRESETS, Preset, preset};
 pub use reference::reference;
 pub use schedule::{Schedule, ScheduledParameter};
-pub use schema::{schema, schema_of};
+pub use schema::{schema, schema_of, unit_of};
 pub use source::{Origin, SourceFile, Sources};
 pub use units::{HOUR, Units, grain_mass};
 pub use waveform::WaveformName;

@@ -1,5 +1,6 @@
 //! The JSON schema of a configuration, made from the keys and tidied for TOML.
 
+use std::iter::once;
 use std::sync::LazyLock;
 
 use peristalsis_physics::contact::Normal;
@@ -276,10 +277,36 @@ fn collect_keys(schema: &Value, path: &str, keys: &mut Vec<String>) {
         collect_keys(inner, &full, keys);
         keys.push(full);
     }
-    let branches = schema["anyOf"].as_array().into_iter().flatten();
-    for inner in schema.get("items").into_iter().chain(branches) {
+    for inner in parts(schema) {
         collect_keys(inner, path, keys);
     }
+}
+
+/// The schemas of the items of a schema and of its alternatives, whose keys are its own.
+fn parts(schema: &Value) -> impl Iterator<Item = &Value> {
+    let alternatives = schema["anyOf"].as_array().into_iter().flatten();
+    schema.get("items").into_iter().chain(alternatives)
+}
+
+/// Unit of a key; `None` of words, and of what has the unit of another key.
+///
+/// ```
+/// use peristalsis_configuration::unit_of;
+///
+/// assert_eq!(unit_of("drive.width"), Some("d"));
+/// assert_eq!(unit_of("drive.schedule.from"), None);
+/// ```
+pub fn unit_of(key: &str) -> Option<&'static str> {
+    let mut inner = vec![&*SCHEMA];
+    for name in key.split('.') {
+        inner = inner
+            .into_iter()
+            .flat_map(|schema| once(schema).chain(parts(schema)))
+            .filter_map(|schema| schema["properties"].get(name))
+            .collect();
+    }
+    let unit = inner.first()?.get("x-unit")?.as_str()?;
+    (!unit.starts_with("that of")).then_some(unit)
 }
 
 /// Full name of a key in a table, which has no name if it is the document.

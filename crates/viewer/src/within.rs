@@ -10,7 +10,7 @@ pub(crate) struct Within {
     pub(crate) study: String,
     /// Number of the run in the addresses of pages.
     pub(crate) number: usize,
-    /// The runs of the same point, this one among them.
+    /// The finished runs of the same point, and this one.
     pub(crate) siblings: Vec<Sibling>,
 }
 

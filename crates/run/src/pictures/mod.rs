@@ -281,8 +281,8 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
         .period
         .max(last.period - flows[flows.len() - 1 - waves.min(flows.len() - 1)].period);
     let x = ((first.period - step).max(0.0), last.period);
-    // The cell of a wave lies about its number.
-    let field = Field::new(&values, waves, x, (-0.5, waves as f64 - 0.5));
+    // The cell of a wave lies about its number, from 1 as in the viewer.
+    let field = Field::new(&values, waves, x, (0.5, waves as f64 + 0.5));
     let panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::Wave))
         .y_scale(Scale::Counting)
         .with(field);

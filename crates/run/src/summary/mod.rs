@@ -2,6 +2,7 @@
 
 mod arrangement;
 mod discharge;
+mod label;
 mod late;
 mod local_flow;
 mod table;
@@ -15,6 +16,7 @@ use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 
 pub use arrangement::{MixedGrains, SegregatedSizes};
 pub use discharge::Discharge;
+pub use label::label;
 use late::{ForceOfContacts, axial_dispersion, error_of, residence_time, wall_torque};
 pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;

@@ -48,6 +48,20 @@ impl RowColumn {
 }
 
 impl RunQuantity {
+    pub(super) fn name(&self) -> &'static str {
+        match &self.source {
+            Source::Setting(quantity) => quantity.name,
+            Source::Result(quantity) => quantity.name,
+        }
+    }
+
+    pub(super) fn unit(&self) -> &'static str {
+        match &self.source {
+            Source::Setting(quantity) => quantity.unit,
+            Source::Result(quantity) => quantity.unit,
+        }
+    }
+
     fn columns(&self) -> Vec<RowColumn> {
         match &self.source {
             Source::Setting(quantity) => RowColumn::of(quantity, self.is_later),
@@ -128,18 +142,6 @@ pub fn summary_keys() -> Vec<SummaryKey> {
             })
     });
     keys.collect()
-}
-
-/// Words or symbol of a column at an axis; `None` where its name serves.
-pub fn label(column: &str) -> Option<&'static str> {
-    QUANTITIES
-        .iter()
-        .filter(|quantity| !quantity.label.is_empty())
-        .find(|quantity| match &quantity.source {
-            Source::Setting(setting) => setting.name == column,
-            Source::Result(result) => result.name == column,
-        })
-        .map(|quantity| quantity.label)
 }
 
 impl Summary {

@@ -1,12 +1,12 @@
 //! A study that is shown: its rows, and the configurations of its runs.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peristalsis_configuration::{Configuration, InitialState};
-use peristalsis_formats::{Table, Values, parquet};
-use peristalsis_run::{TrajectoryFormat, files, label};
+use peristalsis_formats::{Column, Table, Values, parquet};
+use peristalsis_run::{TrajectoryFormat, files, label, row_columns};
 use peristalsis_study::{
     Finding, Identity, Plan, PlannedRun, Specification, State, Store, StudyError, refine,
 };
@@ -65,6 +65,8 @@ pub(crate) struct Shown<'a> {
     counts: &'a BTreeMap<State, usize>,
     /// Whether there may be more rows later.
     growing: bool,
+    /// The folder of its runs; null for a table alone.
+    store: Option<String>,
 }
 
 /// A column of its table.
@@ -72,9 +74,8 @@ pub(crate) struct Shown<'a> {
 #[cfg_attr(test, derive(ts_rs::TS), ts(rename = "Column"))]
 pub(crate) struct ShownColumn<'a> {
     name: &'a str,
-    /// Words or symbol at an axis.
-    label: Option<&'static str>,
-    unit: &'a str,
+    /// Words or symbol at an axis, with the unit.
+    label: String,
     description: &'a str,
     /// NaN, a missing number, is null.
     #[cfg_attr(test, ts(type = "Array<number | string | boolean | null>"))]
@@ -213,16 +214,18 @@ impl Study {
                 .filter(|column| is_known(&column.values))
                 .map(|column| ShownColumn {
                     name: &column.name,
-                    // The column of an axis has a key of the configuration for its name.
-                    label: label(column.name.rsplit('.').next().unwrap_or_default()),
-                    unit: &column.unit,
-                    description: &column.description,
+                    label: label(&column.name, &column.unit),
+                    description: meaning(column),
                     values: &column.values,
                 })
                 .collect(),
             runs: self.numbers_of_rows(),
             counts: &self.counts,
             growing: self.store.is_some() && self.counts.keys().any(|it| it.is_unfinished()),
+            store: self
+                .store
+                .as_ref()
+                .map(|store| store.path().display().to_string()),
         }
     }
 
@@ -237,7 +240,18 @@ impl Study {
         let plan = self.plan.as_ref()?;
         let identity = self.runs.get(number)?;
         let run = plan.runs().iter().find(|run| run.identity == *identity)?;
-        let siblings = plan.runs().iter().filter(|it| it.point == run.point);
+        let finished: HashSet<Identity> = identities(&self.table)
+            .unwrap_or_default()
+            .into_iter()
+            .collect();
+        // What nobody has computed has nothing to compare with.
+        let is_there =
+            |it: &&PlannedRun| it.identity == *identity || finished.contains(&it.identity);
+        let siblings = plan
+            .runs()
+            .iter()
+            .filter(|it| it.point == run.point)
+            .filter(is_there);
         let sibling = |run: &PlannedRun| {
             let replicate = run.replicate;
             let number = *self.numbers.get(&run.identity)?;
@@ -261,6 +275,12 @@ impl Study {
             },
         })
     }
+}
+
+/// What a column means; a table of an earlier program may say it in other words.
+fn meaning(column: &Column) -> &str {
+    let known = row_columns().iter().find(|it| it.name == column.name);
+    known.map_or(&column.description, |it| it.text)
 }
 
 /// The plan of a study with these finished runs.

@@ -299,9 +299,16 @@ fn rows_alone_are_shown_and_with_their_design_their_runs_are_watched() {
         (alone.name(), alone.rows(), alone.watchable()),
         ("small-study", 8, 0)
     );
-    let designed = Study::of_table("rows", rows, Some(&place.design)).unwrap();
+    let designed = Study::of_table("rows", rows.clone(), Some(&place.design)).unwrap();
     assert_eq!(designed.watchable(), 8);
-    let served = place.serve(vec![alone, designed], Vec::new());
+    // Of a design with more replicates than the table, nobody has computed the others.
+    let more = SMALL.replace("replicates = 2", "replicates = 5");
+    let more = Specification::alone("study.toml", &more).unwrap();
+    let partly = Study::of_table("rows", rows, Some(&more)).unwrap();
+    let served = place.serve(vec![alone, designed, partly], Vec::new());
+    let page = format!("{}study/2/run/0/live", served.base);
+    let welcome = served.upgrade(&page, None).unwrap().notice();
+    assert_eq!(welcome["within"]["siblings"].as_array().unwrap().len(), 2);
     assert_eq!(json(&served, "study/0")["runs"][0], Value::Null);
     assert_eq!(ask(&served, "study/0/run/0/", &[]).0, "404");
     assert_eq!(ask(&served, "study/1/run/0/", &[]).0, "200");
