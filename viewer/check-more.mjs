@@ -404,6 +404,15 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
       assert(study.points / study.curves > 1.5, `${tied}: ${study.points} points in ${study.curves} curves`);
     }
     assert.equal((await choose("divergence-coarse")).value, "transition_time");
+    assert.equal((await choose("silo-feed")).value, "discharge_rate");
+    // What stands at the axes is written for a reader, and all that is chosen stands in a line.
+    const labels = await page.locator("#value option, #x option, #other option").allTextContents();
+    assert.deepEqual(labels.filter((label) => /[\^_]/.test(label)), []);
+    for (const wide of ["wavelength", "branches-12x16"]) {
+      await choose(wide);
+      const tops = await page.$$eval("#choices label:not([hidden])", (all) => all.map((it) => Math.round(it.getBoundingClientRect().top)));
+      assert.equal(new Set(tops).size, 1, `${wide}: ${tops}`);
+    }
     const { places } = await choose("branches-coarse");
     for (const place of [places[0], places[Math.floor(places.length / 2)]]) {
       await page.mouse.move(...place);

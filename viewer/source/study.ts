@@ -123,9 +123,10 @@ class StudyPage {
     const parts = rest.map(([state, count]) => `${count} ${states[state] ?? state}`);
     element("facts").textContent = [name, `${results.rows.toLocaleString("en")} runs done`, ...parts].join(" · ");
     element("refresh").hidden = !growing;
+    const folder = /^[\w./-]+$/.test(store ?? "") ? store : `'${store}'`;
     element("empty").textContent = results.rows > 0
       ? "No finished run has such a value."
-      : `No run of this study has ended yet. This computes them: peristalsis study run ${store}/study.toml --store ${store}`;
+      : `No run of this study has ended yet. This computes them: peristalsis study run ${folder}/study.toml --store ${folder}`;
   }
 
   private showChoices(): void {

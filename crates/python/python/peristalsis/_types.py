@@ -621,7 +621,7 @@ class Summary(_Rare):
     periods: float
     """wavelengths that the wave has run"""
     transition_time: float | None
-    """tau; missing where there was none [t]"""
+    """time of the transition, tau; missing where there was none [t]"""
     censored: bool
     """whether the run ended before a transition"""
     transition_threshold: float

@@ -97,9 +97,10 @@ fn raised(symbol: &str, power: i32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::summary::written::row_columns;
     use peristalsis_formats::ValueKind;
+
+    use super::super::row_columns;
+    use super::*;
 
     #[test]
     fn every_number_of_a_row_has_words_and_no_unit_is_in_plain_letters() {

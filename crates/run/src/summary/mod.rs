@@ -20,9 +20,7 @@ pub use label::label;
 use late::{ForceOfContacts, axial_dispersion, error_of, residence_time, wall_torque};
 pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;
-pub use written::{
-    RowColumn, SummaryKey, label, row_columns, set_by, summary_keys, summary_schema,
-};
+pub use written::{RowColumn, SummaryKey, row_columns, set_by, summary_keys, summary_schema};
 
 use crate::assemble::newtonian_reference;
 use crate::recorder::THRESHOLDS;

@@ -266,8 +266,6 @@ mod tests {
             let is_new = before.iter().all(|other| other.name != column.name);
             assert!(is_new && !column.text.is_empty(), "{}", column.name);
         }
-        assert_eq!(label("flow_rate"), Some("flow rate J"));
-        assert_eq!(label("steps"), None);
     }
 
     #[test]
