@@ -6,6 +6,9 @@ import { download } from "./share";
 import { SvgContext } from "./svg";
 import { type Driving, type Span, type Thresholds, thresholds } from "./thresholds";
 
+/** Small steps that a threshold which is marked in the loop may lie between. */
+const MARKED = 5;
+
 /** What the loop is drawn against. */
 export interface Across extends Driving {
   name: string;
@@ -81,10 +84,12 @@ export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, 
   drawCourse(chart, rows, across, colours);
   const found = thresholds(rows.filter(({ number }) => number >= film.since), across);
   for (const [key, colour] of [["jams", colours.against], ["letsGo", colours.along]] as const) {
-    const [from, to] = found[key] ?? [];
-    if (from === undefined || from !== to) continue;
-    chart.upright(from, colour);
-    chart.label(from, key === "jams" ? "jams" : "lets go", key === "jams" ? "right" : "left", colour, colours.back);
+    const [from, to] = found[key] ?? [-Infinity, Infinity];
+    // Between the ends of a jump there is no place to mark.
+    if (to - from > MARKED * across.small) continue;
+    const middle = 0.5 * (from + to);
+    chart.upright(middle, colour);
+    chart.label(middle, key === "jams" ? "jams" : "lets go", key === "jams" ? "right" : "left", colour, colours.back);
   }
   const at = rows.findLastIndex((row) => row.clock <= frame.clock + 1e-9);
   if (at >= 0) chart.dot(across.of(rows[at]), rows[at].average, 5, colours.accent, colours.back);

@@ -35,6 +35,6 @@ export function choice(now: Wanted, open: (tube: Wanted) => void): HTMLElement {
   TUBES.forEach((tube, k) => select.add(new Option(tube.name, String(k), false, is(tube, now))));
   if (!TUBES.some((tube) => is(tube, now))) select.add(new Option(now.preset, "", true, true));
   select.onchange = () => select.value && open(TUBES[Number(select.value)]);
-  label.append("beginning ", select);
+  label.append("begins ", select);
   return label;
 }
