@@ -9,7 +9,7 @@ const AVERAGED = 16;
 const PERIODS = 1;
 const LOOKS = 12000;
 /** Bins of a profile: as many, where there are enough grains for that. */
-const BINS = { least: 6, most: 24 };
+const BINS = { least: 4, most: 24 };
 /** Looks at grains that a mean velocity is taken of, at least. */
 const FEWEST = 8;
 
