@@ -26,7 +26,7 @@ pub enum Palette {
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct ColourScale {
-    label: String,
+    pub(crate) label: String,
     least: f64,
     largest: f64,
     scale: Scale,
@@ -49,6 +49,8 @@ const BAR_STEPS: usize = 128;
 const BAR_GAP: f64 = 7.0;
 const ROOM_PER_LABEL: f64 = 13.5;
 const MOST_LABELS: usize = 6;
+/// From one line of a label to the next.
+const LINE: f64 = 8.8;
 /// Gap between the numbers of a bar across.
 const ROOM_BETWEEN_LABELS: f64 = 8.0;
 /// Part of the sequential palette without the colours that would be lost as lines on white.
@@ -190,8 +192,8 @@ impl ColourScale {
         BAR_GAP + BAR_WIDTH + TICK_GAP + widest(&self.ticks_up(height)) + label + 3.0
     }
 
-    /// Draws the bar across, its label before it, smaller where it would reach further left than `from`, and its numbers
-    /// below.
+    /// Draws the bar across, its label before it, in two lines where it would reach further left than `from`, and its
+    /// numbers below.
     pub(crate) fn draw_bar_across(
         &self,
         drawing: &mut Drawing,
@@ -211,8 +213,15 @@ impl ColourScale {
         outline(layer, area, segments, ink);
         let middle = area.top + area.height / 2.0 + DIGIT_HEIGHT * LABEL_SIZE / 2.0;
         let end = area.left - BAR_GAP;
-        let text = Text::fitted(&self.label, LABEL_SIZE, end - from);
-        layer.text((end, middle), Anchor::End, text, ink);
+        let lines = match Text::new(&self.label, LABEL_SIZE).width <= end - from {
+            true => vec![&*self.label],
+            false => broken(&self.label),
+        };
+        for (number, line) in lines.iter().enumerate() {
+            let below = (number as f64 - 0.5 * (lines.len() - 1) as f64) * LINE;
+            let text = Text::fitted(line, LABEL_SIZE, end - from);
+            layer.text((end, middle + below), Anchor::End, text, ink);
+        }
     }
 
     /// Draws the bar with its label in the middle below panels; returns the height that it takes.
@@ -256,6 +265,18 @@ impl ColourScale {
         let fraction = |step: usize| (step as f64 + 0.5) / BAR_STEPS as f64;
         (0..BAR_STEPS).map(move |step| self.colour_at(fraction(step)))
     }
+}
+
+/// A label in two lines: words and symbol, or else about equal parts.
+fn broken(label: &str) -> Vec<&str> {
+    let after_comma = label.rfind(", ").map(|place| place + 1);
+    let middle = label.len() / 2;
+    let spaces = label.match_indices(' ').map(|(place, _)| place);
+    let place = after_comma.or_else(|| spaces.min_by_key(|place| place.abs_diff(middle)));
+    let Some((first, second)) = place.map(|place| label.split_at(place)) else {
+        return vec![label];
+    };
+    vec![first, second.trim_start()]
 }
 
 /// Draws the outline of a bar, and its ticks.
@@ -315,6 +336,15 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_long_label_is_broken_before_its_symbol() {
+        let label = "axial velocity along the wave, *v_z*/*c*";
+        let lines = ["axial velocity along the wave,", "*v_z*/*c*"];
+        assert_eq!(broken(label), lines);
+        assert_eq!(broken("contacts of a grain"), ["contacts", "of a grain"]);
+        assert_eq!(broken("*Y*"), ["*Y*"]);
     }
 
     #[test]

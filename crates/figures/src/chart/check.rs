@@ -115,7 +115,7 @@ impl Check {
                 let end = finite("end of a window", end)?;
                 self.x.push(&self.series, 0, end)
             }),
-            Kind::Note(_) => Ok(()),
+            Kind::Key(_) | Kind::Note(_) => Ok(()),
         }
     }
 

@@ -1,7 +1,8 @@
 //! What the layers of a panel mean, as its legend says it.
 
-use super::layer::{ChartLayer, Kind};
-use super::paint::{BAND_OPACITY, BAR_OPACITY, Painter, WINDOW_OPACITY, arrow, join_stroke};
+use super::layer::{ChartLayer, Kind, Sample};
+use super::look::marker;
+use super::paint::{BAND_OPACITY, BAR_OPACITY, Painter, RADII, WINDOW_OPACITY, arrow, join_stroke};
 use crate::geometry::Point;
 use crate::legend::{Entry, Mark};
 
@@ -68,6 +69,17 @@ impl Painter<'_> {
             Kind::Band(band) => vec![area(&band.name, BAND_OPACITY)],
             Kind::Bars(bars) => vec![area(&bars.name, BAR_OPACITY)],
             Kind::Window(window) => vec![area(&window.name, WINDOW_OPACITY * 1.4)],
+            Kind::Key(key) => {
+                let marked = |open: bool| Entry {
+                    mark: Some(Mark::new(marker(0, RADII[0].1), colour, open)),
+                    ..named(&key.name)
+                };
+                vec![match key.sample {
+                    Sample::Filled => marked(false),
+                    Sample::Open => marked(true),
+                    Sample::Area => area(&key.name, WINDOW_OPACITY * 1.4),
+                }]
+            }
             Kind::Field(_) | Kind::Spheres(_) | Kind::Reference(_) | Kind::Note(_) => Vec::new(),
         }
     }

@@ -13,14 +13,15 @@ pub struct Points {
     pub(super) name: String,
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
-    /// Empty where no errors are known, and so for y.
-    pub(super) x_errors: Vec<f64>,
-    pub(super) y_errors: Vec<f64>,
+    /// Below and above; empty where no errors are known, and so for y.
+    pub(super) x_errors: Vec<[f64; 2]>,
+    pub(super) y_errors: Vec<[f64; 2]>,
     pub(super) lower_limits: Vec<bool>,
     pub(super) limit_name: String,
     pub(super) look: Look,
     pub(super) open: bool,
     pub(super) joined: bool,
+    pub(super) breaks: Vec<f64>,
 }
 
 /// A curve; rows that are not finite leave gaps.
@@ -106,6 +107,24 @@ pub struct Window {
     pub(super) look: Look,
 }
 
+/// An entry of the legend for what several layers have in common, such as open markers.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
+pub struct Key {
+    pub(super) name: String,
+    pub(super) look: Look,
+    pub(super) sample: Sample,
+}
+
+/// What a key shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Sample {
+    #[default]
+    Filled,
+    Open,
+    Area,
+}
+
 /// A line of text in a corner of the panel.
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
@@ -143,6 +162,7 @@ pub(super) enum Kind {
     Spheres(Spheres),
     Reference(Reference),
     Window(Window),
+    Key(Key),
     Note(Note),
 }
 
@@ -159,12 +179,18 @@ impl Points {
 
     /// Errors of x, the same to both sides.
     pub fn x_errors(mut self, errors: &[f64]) -> Self {
-        self.x_errors = errors.to_vec();
+        self.x_errors = errors.iter().map(|error| [*error; 2]).collect();
         self
     }
 
     /// Errors of y, the same to both sides.
     pub fn y_errors(mut self, errors: &[f64]) -> Self {
+        self.y_errors = errors.iter().map(|error| [*error; 2]).collect();
+        self
+    }
+
+    /// Errors of y downwards and upwards.
+    pub fn y_sides(mut self, errors: &[[f64; 2]]) -> Self {
         self.y_errors = errors.to_vec();
         self
     }
@@ -193,6 +219,20 @@ impl Points {
         self
     }
 
+    /// The line that joins them is only hinted at where it would pass this x: there is a jump.
+    pub fn broken_at(mut self, x: f64) -> Self {
+        self.breaks.push(x);
+        self
+    }
+
+    /// Whether the way from one x to the next passes a jump.
+    pub(super) fn jumps_between(&self, one: f64, next: f64) -> bool {
+        let (least, largest) = (one.min(next), one.max(next));
+        self.breaks
+            .iter()
+            .any(|place| (least..=largest).contains(place))
+    }
+
     /// The rows with a place.
     pub(super) fn rows(&self) -> impl Iterator<Item = usize> {
         (0..self.x.len()).filter(|&row| self.x[row].is_finite() && self.y[row].is_finite())
@@ -204,10 +244,11 @@ impl Points {
 }
 
 /// Ends of the error bar of a value in a row; the value itself where its error is unknown.
-pub(super) fn error_ends(errors: &[f64], row: usize, value: f64) -> [f64; 2] {
-    let error = errors.get(row).copied().filter(|error| error.is_finite());
-    let error = error.unwrap_or(0.0).abs();
-    [value - error, value + error]
+pub(super) fn error_ends(errors: &[[f64; 2]], row: usize, value: f64) -> [f64; 2] {
+    let errors = errors.get(row).copied().unwrap_or_default();
+    let known = |error: f64| if error.is_finite() { error.abs() } else { 0.0 };
+    let [down, up] = errors.map(known);
+    [value - down, value + up]
 }
 
 impl Line {
@@ -332,6 +373,34 @@ impl Window {
     }
 }
 
+impl Key {
+    /// A filled marker; the name is in markup.
+    pub fn filled(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            look: Look::of(Tint::Black),
+            sample: Sample::Filled,
+        }
+    }
+
+    /// A marker with a white inside.
+    pub fn open(name: &str) -> Self {
+        Self {
+            sample: Sample::Open,
+            ..Self::filled(name)
+        }
+    }
+
+    /// A shaded area.
+    pub fn area(name: &str) -> Self {
+        Self {
+            sample: Sample::Area,
+            look: Look::of(Tint::Grey),
+            ..Self::filled(name)
+        }
+    }
+}
+
 impl Note {
     /// A text, in markup, in a corner of the panel.
     pub fn corner(corner: Corner, text: &str) -> Self {
@@ -376,7 +445,7 @@ macro_rules! layers {
 }
 
 layers!(
-    Points, Line, Band, Bars, Field, Spheres, Reference, Window, Note
+    Points, Line, Band, Bars, Field, Spheres, Reference, Window, Key, Note
 );
 
 /// Interface between a chart and each of its layers.
@@ -400,7 +469,8 @@ impl ChartLayer {
             Kind::Reference(it) => (5, "reference line", &*it.label, Some(it.look)),
             Kind::Line(it) => (6, "line", &*it.name, Some(it.look)),
             Kind::Points(it) => (7, "points", &*it.name, Some(it.look)),
-            Kind::Note(it) => (8, "note", &*it.text, Some(it.look)),
+            Kind::Key(it) => (8, "key", &*it.name, Some(it.look)),
+            Kind::Note(it) => (9, "note", &*it.text, Some(it.look)),
         };
         Facts {
             depth,
@@ -429,10 +499,13 @@ impl ChartLayer {
 
     /// The value that decides the layer's colour on the chart's scale, where one does.
     pub(super) fn value_of_colour(&self) -> Option<f64> {
-        match self.facts().look?.tint? {
-            Tint::Value(value) => Some(value),
-            _ => None,
-        }
+        self.facts().look?.value()
+    }
+
+    /// The value that decides the colour of points, where one does.
+    pub(super) fn value_of_points(&self) -> Option<f64> {
+        let is_points = matches!(self.0, Kind::Points(_));
+        is_points.then(|| self.value_of_colour()).flatten()
     }
 
     /// The name without markup, or what the layer is where it has none.

@@ -3,13 +3,13 @@
 use super::check::Checked;
 use super::frame::{Frame, Surround};
 use super::panel::AxisWish;
-use super::{ChartFigure, HEADER_SPACE};
+use super::{ChartFigure, ChartPanel, HEADER_SPACE};
 use crate::axis::{Axis, Tick, extent, widest};
 use crate::error::FigureError;
 use crate::geometry::Rectangle;
 use crate::style::{
-    LABEL_BASELINE, LABEL_SPACE, POINTS_PER_MILLIMETRE, RIGHT_MARGIN, TICK_GAP, TICK_SIZE,
-    TICK_SPACE, Width,
+    LABEL_BASELINE, LABEL_SPACE, MAJOR_TICK, POINTS_PER_MILLIMETRE, RIGHT_MARGIN, TICK_GAP,
+    TICK_SIZE, TICK_SPACE, Width,
 };
 use crate::text::Text;
 
@@ -95,7 +95,7 @@ impl Layout {
                         y: axes.y,
                     },
                     around: Surround {
-                        x_ticks: x_ticks(&axes.x, spaces.width),
+                        x_ticks: x_ticks(&figure.panels[index], &axes.x, spaces.width),
                         y_ticks: y_ticks(&axes.y, height),
                         has_x_numbers: bears_x(figure, index),
                         y_baseline: bears_y(figure, index).then_some(baseline),
@@ -158,13 +158,14 @@ impl Spaces {
         };
         let mut left: Vec<f64> = (0..columns).map(names).collect();
         let right = match &figure.colour_scale {
-            Some(scale) if !figure.equal_scales => scale.space(height),
+            Some(scale) if !figure.equal_scales && !figure.tells_values() => scale.space(height),
             _ => RIGHT_MARGIN,
         };
         // The numbers at the ends of a horizontal axis reach over it, nearly alike for nearly equal widths.
         let width = width_beside(&left, right);
         let over = |index: usize| {
-            let ends = bears_x(figure, index).then(|| overhang(&axes[index].x, width));
+            let panel = &figure.panels[index];
+            let ends = bears_x(figure, index).then(|| overhang(panel, &axes[index].x, width));
             ends.unwrap_or_default()
         };
         for (column, space) in left.iter_mut().enumerate().skip(1) {
@@ -212,12 +213,18 @@ fn axes(figure: &ChartFigure, height: f64) -> Result<Vec<Axes>, FigureError> {
     let columns = figure.columns;
     (0..checked.len())
         .map(|index| {
-            let those = |shares: bool, place: &dyn Fn(usize) -> usize| -> Vec<usize> {
-                let with = |it: &usize| *it == index || shares && place(*it) == place(index);
-                (0..checked.len()).filter(with).collect()
+            let those = |has: &dyn Fn(usize) -> bool| -> Vec<usize> {
+                (0..checked.len()).filter(|&it| has(it)).collect()
             };
-            let column = those(figure.shares_x, &|it| it % columns);
-            let row = those(figure.shares_y, &|it| it / columns);
+            let is_below = |it: usize| it % columns == index % columns;
+            let is_beside = |it: usize| it / columns == index / columns;
+            let column = those(&|it| it == index || figure.shares_x && is_below(it));
+            let row = those(&|it| match (figure.shares_y, figure.alike_y) {
+                (true, true) => true,
+                (true, false) => is_beside(it),
+                (false, true) => is_below(it),
+                (false, false) => it == index,
+            });
             let x = shared("x", &column, |it| (&figure.panels[it].x, checked[it].x))?;
             let y = shared("y", &row, |it| (&figure.panels[it].y, checked[it].y))?;
             // All that share an axis must have the same free space on it.
@@ -253,7 +260,16 @@ fn shared<'a>(
     Ok((wish, data))
 }
 
-fn x_ticks(axis: &Axis, width: f64) -> Vec<Tick> {
+fn x_ticks(panel: &ChartPanel, axis: &Axis, width: f64) -> Vec<Tick> {
+    if !panel.x_names.is_empty() {
+        let named = panel.x_names.iter().enumerate();
+        let named = named.map(|(number, name)| Tick {
+            value: number as f64 + 1.0,
+            length: MAJOR_TICK,
+            label: Some(name.clone()),
+        });
+        return named.collect();
+    }
     let most = ((width / ROOM_ACROSS) as usize).min(MOST_ACROSS);
     axis.fitting_ticks(width, most, |label| {
         Text::new(label, TICK_SIZE).width + NUMBER_GAP
@@ -266,8 +282,8 @@ fn y_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
 }
 
 /// How far the first and the last number of a horizontal axis reach over its ends.
-fn overhang(axis: &Axis, width: f64) -> (f64, f64) {
-    let ticks = x_ticks(axis, width);
+fn overhang(panel: &ChartPanel, axis: &Axis, width: f64) -> (f64, f64) {
+    let ticks = x_ticks(panel, axis, width);
     let labels = ticks.iter().filter_map(|tick| {
         let half = Text::new(tick.label.as_ref()?, TICK_SIZE).width / 2.0;
         let place = width * axis.fraction(tick.value);

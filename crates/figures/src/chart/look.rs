@@ -31,7 +31,7 @@ pub enum Tint {
     Value(f64),
 }
 
-/// What decides the colour of a layer: its series, unless a tint is given.
+/// What decides the colour of a layer, and the marker of points: its series, unless a tint is given.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Look {
     pub(super) series: Option<usize>,
@@ -63,6 +63,14 @@ impl Look {
         Self { series: None, tint }
     }
 
+    /// The value that decides the colour, where one does.
+    pub(super) fn value(self) -> Option<f64> {
+        match self.tint? {
+            Tint::Value(value) => Some(value),
+            _ => None,
+        }
+    }
+
     /// Colour of the layer; `number` counts the layers of the panel.
     pub(super) fn colour(self, number: usize, scale: Option<&ColourScale>) -> Colour {
         let number = self.series.unwrap_or(number);
@@ -80,16 +88,16 @@ impl Look {
             Tint::Value(value) => scale.map_or(GREY, |scale| scale.colour(value)),
         }
     }
+}
 
-    /// Outline of the layer's marker around the origin, about as large as a disc of a radius in points.
-    pub(super) fn marker(self, number: usize, radius: f64) -> Path {
-        let origin = Point::new(0.0, 0.0);
-        match self.series.unwrap_or(number) % (POLYGONS.len() + 1) {
-            0 => Path::circle(origin, radius),
-            shape => {
-                let corners = POLYGONS[shape - 1].iter();
-                Path::polygon(corners.map(|(x, y)| Point::new(x * radius, y * radius)))
-            }
+/// Outline of the marker of a number around the origin, about as large as a disc of a radius in points.
+pub(super) fn marker(number: usize, radius: f64) -> Path {
+    let origin = Point::new(0.0, 0.0);
+    match number % (POLYGONS.len() + 1) {
+        0 => Path::circle(origin, radius),
+        shape => {
+            let corners = POLYGONS[shape - 1].iter();
+            Path::polygon(corners.map(|(x, y)| Point::new(x * radius, y * radius)))
         }
     }
 }

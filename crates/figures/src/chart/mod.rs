@@ -41,7 +41,9 @@ mod tests;
 mod texts;
 
 pub(crate) use layer::Spheres;
-pub use layer::{Band, Bars, ChartLayer, Corner, Field, Line, Note, Points, Reference, Window};
+pub use layer::{
+    Band, Bars, ChartLayer, Corner, Field, Key, Line, Note, Points, Reference, Window,
+};
 pub use look::Tint;
 pub use panel::ChartPanel;
 
@@ -52,11 +54,12 @@ use crate::colour_scale::{ColourScale, REACH_ON_WHITE};
 use crate::drawing::{Anchor, Drawing};
 use crate::error::{FigureError, positive};
 use crate::geometry::Rectangle;
-use crate::legend::{Entry, Legend, TOP_SPACE};
+use crate::legend::{Entry, Legend, Mark, TOP_SPACE};
 use crate::style::{LABEL_SIZE, RIGHT_MARGIN, TITLE_SIZE, TITLE_SPACE, Width};
 use crate::text::{Text, plain};
 use layout::{Layout, Seat};
-use paint::Painter;
+use look::marker;
+use paint::{Painter, RADII};
 use placement::Obstacles;
 
 /// A figure of one or several panels.
@@ -72,6 +75,7 @@ pub struct ChartFigure {
     equal_scales: bool,
     shares_x: bool,
     shares_y: bool,
+    alike_y: bool,
     legend: LegendPlace,
     colour_scale: Option<ColourScale>,
 }
@@ -88,6 +92,8 @@ pub enum LegendPlace {
     Hidden,
 }
 
+/// Most values that the legend tells one by one.
+const MOST_VALUES: usize = 12;
 /// Space above a frame for its letter and title.
 const HEADER_SPACE: f64 = 9.5;
 /// Free space at the sides of what stands below the panels.
@@ -152,13 +158,20 @@ impl ChartFigure {
         self
     }
 
+    /// Panels in a column have vertical axes of one range, all panels where those in a row share theirs.
+    pub fn alike_y(mut self) -> Self {
+        self.alike_y = true;
+        self
+    }
+
     /// Where the legend stands.
     pub fn legend(mut self, legend: LegendPlace) -> Self {
         self.legend = legend;
         self
     }
 
-    /// What the colours of fields and of [`Tint::Value`] mean, drawn as a bar at the right of the panels.
+    /// What the colours of fields and of [`Tint::Value`] mean: the legend says it where they are those of a few values of
+    /// points, each of which has a marker of its own throughout the figure, and a bar at the right of the panels elsewhere.
     pub fn colour_scale(mut self, scale: ColourScale) -> Self {
         self.colour_scale = Some(scale);
         self
@@ -188,15 +201,19 @@ impl ChartFigure {
             layer.text((width / 2.0, 9.0), Anchor::Middle, text, BLACK);
         }
         let scale = self.shown_scale();
-        let below = self.draw_panels(&mut drawing, &layout, scale.as_ref());
+        let of_panels = self.draw_panels(&mut drawing, &layout, scale.as_ref());
+        let mut below = Vec::new();
         let mut bottom = layout.bottom;
         if let Some(scale) = &scale {
             if self.equal_scales {
                 bottom += scale.draw_bar_below(&mut drawing, layout.span(), bottom);
+            } else if self.tells_values() {
+                below = self.entries_of_values(scale);
             } else {
                 scale.draw_bar_beside(&mut drawing, layout.span());
             }
         }
+        below.extend(of_panels);
         let legend = Legend::new(below, width - 2.0 * SIDE);
         legend.draw(&mut drawing, SIDE, width - SIDE, bottom);
         drawing.height = bottom + legend.height() + 3.0;
@@ -212,6 +229,7 @@ impl ChartFigure {
         scale: Option<&ColourScale>,
     ) -> Vec<Entry> {
         // Panels often hold the same series: each is explained once.
+        let values = self.values_of_points();
         let mut explained: Vec<Entry> = Vec::new();
         let mut below: Vec<Entry> = Vec::new();
         for (number, (seat, chart)) in layout.seats.iter().zip(&self.panels).enumerate() {
@@ -219,6 +237,7 @@ impl ChartFigure {
                 frame: seat.frame,
                 chart,
                 scale,
+                values: &values,
                 drawing: &mut *drawing,
                 obstacles: Obstacles::default(),
             };
@@ -241,6 +260,45 @@ impl ChartFigure {
             }
         }
         below
+    }
+
+    /// The values that colour points, ascending.
+    fn values_of_points(&self) -> Vec<f64> {
+        let layers = self.panels.iter().flat_map(|panel| &panel.layers);
+        let mut values: Vec<f64> = layers.filter_map(ChartLayer::value_of_points).collect();
+        values.sort_by(f64::total_cmp);
+        values.dedup();
+        values
+    }
+
+    /// Whether the legend says what the colours mean: they are those of few values, all of them of points.
+    fn tells_values(&self) -> bool {
+        let values = self.values_of_points();
+        let layers = || self.panels.iter().flat_map(|panel| &panel.layers);
+        let mut coloured = layers().filter_map(ChartLayer::value_of_colour);
+        !self.equal_scales
+            && (1..=MOST_VALUES).contains(&values.len())
+            && coloured.all(|value| values.contains(&value))
+            && !layers().any(ChartLayer::is_coloured_area)
+    }
+
+    /// What the scale of colours is of, and the colour and the marker of each value.
+    fn entries_of_values(&self, scale: &ColourScale) -> Vec<Entry> {
+        let of_value = |(number, value): (usize, f64)| Entry {
+            mark: Some(Mark::new(
+                marker(number, RADII[0].1),
+                scale.colour(value),
+                false,
+            )),
+            meaning: value.to_string().replace('-', "−"),
+            ..Entry::default()
+        };
+        let name = Entry {
+            meaning: format!("{}:", scale.label),
+            ..Entry::default()
+        };
+        let values = self.values_of_points().into_iter().enumerate();
+        [name].into_iter().chain(values.map(of_value)).collect()
     }
 
     /// The scale of colours, without those that would be lost on white where it colours lines and points.

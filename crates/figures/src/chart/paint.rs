@@ -5,17 +5,17 @@ use super::frame::Frame;
 use super::layer::{
     Band, Bars, ChartLayer, Field, Kind, Line, Points, Reference, Spheres, Window, error_ends,
 };
-use super::look::{Look, Tint};
+use super::look::{Look, Tint, marker};
 use super::panel::ChartPanel;
 use super::placement::Obstacles;
 use crate::colour::{BLACK, Colour, GREY, WHITE};
 use crate::colour_scale::ColourScale;
-use crate::drawing::{Drawing, Fill, Image, Layer, Stroke};
+use crate::drawing::{Drawing, Fill, Image, Layer, Pattern, Stroke};
 use crate::geometry::{Path, Point, Rectangle};
 use crate::legend::Mark;
 
 /// Radius of a mark in points, by the number of points of a series up to which it is used.
-const RADII: [(usize, f64); 3] = [(150, 1.9), (1500, 1.3), (usize::MAX, 0.8)];
+pub(super) const RADII: [(usize, f64); 3] = [(150, 1.9), (1500, 1.3), (usize::MAX, 0.8)];
 const BAR_WEIGHT: f64 = 0.6;
 /// Half the width of the cap of an error bar.
 const CAP: f64 = 1.5;
@@ -39,6 +39,8 @@ pub(super) struct Painter<'a> {
     pub(super) frame: Frame,
     pub(super) chart: &'a ChartPanel,
     pub(super) scale: Option<&'a ColourScale>,
+    /// Values that colour points anywhere in the figure, ascending: each has one marker everywhere.
+    pub(super) values: &'a [f64],
     pub(super) drawing: &'a mut Drawing,
     /// What must not be covered.
     pub(super) obstacles: Obstacles,
@@ -82,7 +84,7 @@ impl<'a> Painter<'a> {
                     self.draw_points(points, colour);
                     self.draw_marks(points, number);
                 }
-                Kind::Note(_) => {}
+                Kind::Key(_) | Kind::Note(_) => {}
             }
         }
     }
@@ -218,10 +220,21 @@ impl<'a> Painter<'a> {
         let frame = self.frame;
         let place = |row: usize| frame.place(points.x[row], points.y[row]);
         if points.joined {
-            let line: Vec<Point> = points.rows().map(place).collect();
-            self.obstacles.line(&line);
-            self.layer("joins")
-                .stroke(Path::line(line), join_stroke(colour));
+            let rows: Vec<usize> = points.rows().collect();
+            let (x, stroke) = (&points.x, join_stroke(colour));
+            for piece in rows.chunk_by(|&one, &next| !points.jumps_between(x[one], x[next])) {
+                let line: Vec<Point> = piece.iter().copied().map(place).collect();
+                self.obstacles.line(&line);
+                self.layer("joins").stroke(Path::line(line), stroke);
+            }
+            let pairs = rows.windows(2);
+            for pair in pairs.filter(|pair| points.jumps_between(x[pair[0]], x[pair[1]])) {
+                let line = [place(pair[0]), place(pair[1])];
+                self.obstacles.line(&line);
+                let pattern = Pattern::Dotted;
+                let hint = Stroke { pattern, ..stroke };
+                self.layer("joins").stroke(Path::line(line), hint);
+            }
         }
         let mut bars = Vec::new();
         for row in points.rows() {
@@ -261,14 +274,26 @@ impl<'a> Painter<'a> {
             .iter()
             .find(|(most, _)| points.x.len() <= *most)
             .map_or(RADII[0].1, |(_, radius)| *radius);
+        let rank = || {
+            let value = points.look.value()?;
+            self.values.iter().position(|it| *it == value)
+        };
+        let shape = points.look.series.or_else(rank).unwrap_or(number);
+        Mark::new(marker(shape, radius), colour, open)
+    }
+}
+
+impl Mark {
+    /// A mark of an outline in a colour.
+    pub(super) fn new(outline: Path, colour: Colour, open: bool) -> Self {
         // An open mark lets see what lies below it; a white edge keeps marks apart that lie over each other.
         let (fill, stroke) = if open {
             (WHITE.faint(0.2), Stroke::solid(colour, 0.75))
         } else {
             (colour, Stroke::solid(WHITE, 0.3))
         };
-        Mark {
-            outline: points.look.marker(number, radius),
+        Self {
+            outline,
             fill,
             stroke,
             bars: Vec::new(),

@@ -16,6 +16,7 @@ pub struct ChartPanel {
     pub(super) title: String,
     pub(super) x: AxisWish,
     pub(super) y: AxisWish,
+    pub(super) x_names: Vec<String>,
     pub(super) layers: Vec<ChartLayer>,
 }
 
@@ -40,6 +41,7 @@ impl ChartPanel {
             title: String::new(),
             x: AxisWish::new(x_label),
             y: AxisWish::new(y_label),
+            x_names: Vec::new(),
             layers: Vec::new(),
         }
     }
@@ -71,6 +73,12 @@ impl ChartPanel {
     /// Range of the vertical axis; an end that is left open, as in `0.0..`, follows the data.
     pub fn y_range(mut self, range: impl RangeBounds<f64>) -> Self {
         self.y = self.y.within(&range);
+        self
+    }
+
+    /// Names, in markup, of x = 1, 2, ... in place of numbers.
+    pub fn x_names(mut self, names: &[String]) -> Self {
+        self.x_names = names.to_vec();
         self
     }
 
