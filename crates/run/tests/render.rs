@@ -96,7 +96,7 @@ fn a_grain_is_where_it_is_and_in_its_colour() {
             r > 190 && r.abs_diff(b) < 12 && r.abs_diff(g) < 12
         }),
     ] {
-        let frame = one_grain(&run, [0.4, 0.0, 0.25 * length], heading * ratio * speed);
+        let frame = one_grain(&run, [0.0, 0.4, 0.25 * length], heading * ratio * speed);
         let scene = PictureScene::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
         let picture = scene.picture(&frame).unwrap();
         // The wave runs to the right, towards -z, so that z = L/4 is at three quarters of the picture.
@@ -115,6 +115,37 @@ fn a_grain_is_where_it_is_and_in_its_colour() {
             (marked / disc - 1.0).abs() < 0.25,
             "{marked} pixels for {disc}"
         );
+    }
+}
+
+#[test]
+fn gravity_across_the_tube_points_down() {
+    let row_of = |gravity: &str, place: [f64; 3]| {
+        let settings = format!("tube.waves=2 grains.number=60 body.gravity={gravity}");
+        let run = Run::new(common::configuration("frictionless", &settings)).unwrap();
+        [Aspect::Side, Aspect::Section(Place::At(5.0))].map(|aspect| {
+            let bare = Look {
+                aspect,
+                wall: WallLook::Hidden,
+                ..look(300)
+            };
+            let frame = one_grain(&run, place, 0.0);
+            let scene = PictureScene::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
+            let picture = scene.picture(&frame).unwrap();
+            let mut pixels = picture.pixels().chunks_exact(3);
+            let first = pixels.position(|pixel| pixel != [255; 3]).unwrap();
+            (first / 300) as f64 / f64::from(picture.height())
+        })
+    };
+    for (gravity, down) in [
+        ("[0,-0.001,0]", [0.0, -1.0]),
+        ("[0.001,0,0.001]", [1.0, 0.0]),
+    ] {
+        let [lower, upper] =
+            [1.0, -1.0].map(|side| row_of(gravity, [side * down[0], side * down[1], 5.0]));
+        for (lower, upper) in lower.into_iter().zip(upper) {
+            assert!(upper < lower, "{gravity}: {upper} above {lower}");
+        }
     }
 }
 

@@ -25,14 +25,14 @@ pub(super) fn discharge(run: &Run, discharge: &Discharge) -> Result<Drawing, Fig
     let unit = units(run.configuration()).time();
     let name = format!("late rate {} *m*/{unit}", with_error(rate, error));
     let panel =
-        |label: &str| ChartPanel::new(&format!("time *t* / {unit}"), label).x_range(0.0..=last);
+        |label: &str| ChartPanel::new(&format!("time, *t*/{unit}"), label).x_range(0.0..=last);
     let late_rate = Line::new(&name, &[begin, last], &line).tint(Tint::Orange);
     let panels = [
-        panel("discharged / *m*")
+        panel("discharged, *M*/*m*")
             .y_range(0.0..)
             .with(Line::new("", &time, &discharged).tint(Tint::Blue))
             .with(late_rate.pattern(Pattern::Dashed)),
-        panel("in the tube / *m*").with(Line::new("", &time, &hold_up).tint(Tint::Green)),
+        panel("in the tube, *M*/*m*").with(Line::new("", &time, &hold_up).tint(Tint::Green)),
     ];
     ChartFigure::grid(1, panels)
         .title(&title(run.configuration()))

@@ -4,7 +4,7 @@ mod discharge;
 mod profile;
 mod snapshot;
 
-use peristalsis_analysis::number::{plain, with_error};
+use peristalsis_analysis::number::{decimal, plain, with_error};
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter, WaveformName, word};
 use peristalsis_figures::chart::{
     Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
@@ -29,9 +29,13 @@ pub use self::snapshot::snapshot_stack;
 const MARKED_PERIODS: usize = 60;
 /// Periods from which the axis of time ends at a whole one, though the last sample may fall a little short.
 const MANY_PERIODS: f64 = 5.0;
-/// Heights of panels in millimetres: against one quantity, and of space and time.
+/// Heights of panels in millimetres: against one quantity, of two below each other, and of space and time.
 const HEIGHT: f64 = 42.0;
+const LOW_HEIGHT: f64 = 30.0;
 const SPACE_TIME_HEIGHT: f64 = 50.0;
+
+/// Places in time at which the course of a driven parameter is drawn.
+const PLACES: u32 = 1000;
 
 /// The names of all figures.
 pub(crate) const NAMES: [&str; 5] = ["discharge", "flow", "profile", "snapshot", "wall"];
@@ -197,7 +201,8 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
         }
     }
     let threshold = configuration.observe.transition_threshold;
-    panel = panel.with(Reference::horizontal(threshold).label("threshold"));
+    let level = Line::new("threshold", &[0.0, last], &[threshold; 2]).tint(Tint::Black);
+    panel = panel.with(level.pattern(Pattern::Dotted).weight(0.7));
     let late_mean = late_mean(summary.flow_rate_ratio, run.late_fraction(), last);
     panel = panel.with_all(late_mean.into_iter().flatten());
     panel = panel.with_all(newtonian_fluid(summary, last));
@@ -206,16 +211,39 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
         let start = passed.checked_sub(1).map_or(0.0, |it| samples[it].time);
         let (before, after) = (end(passed), end((passed + 1).min(samples.len())));
         let period = before + (after - before) * (time - start) / samples[0].time;
-        let words = format!("*τ* = {} {}", plain(time), units(configuration).time());
+        let unit = units(configuration).time();
+        let words = format!("*τ* = {} {unit} = {} *T*", plain(time), decimal(period, 1));
         let transition = Reference::vertical(period).label(&words);
         panel = panel.with(transition.tint(Tint::Vermillion).pattern(Pattern::Solid));
     }
-    ChartFigure::new(panel)
+    let driven = driven(configuration, last);
+    let height = if driven.is_empty() { HEIGHT } else { LOW_HEIGHT };
+    ChartFigure::grid(1, [panel].into_iter().chain(driven))
         .title(&title(configuration))
         .description("Flow rate against time in periods of the wave.")
-        .panel_height(HEIGHT)
+        .panel_height(height)
+        .share_x()
         .legend(LegendPlace::Below)
         .draw()
+}
+
+/// What the drive does up to a last period: a panel for each parameter that a schedule changes.
+fn driven(configuration: &Configuration, last: f64) -> Vec<ChartPanel> {
+    let parameters = [
+        (ScheduledParameter::Width, Quantity::Width),
+        (ScheduledParameter::ForceAmplitude, Quantity::ForceAmplitude),
+        (ScheduledParameter::StrainRate, Quantity::StrainRate),
+    ];
+    let course = |(parameter, quantity): (ScheduledParameter, Quantity)| {
+        let schedule = configuration.drive.schedule(parameter)?;
+        let place = |number: u32| last * f64::from(number) / f64::from(PLACES);
+        let time: Vec<f64> = (0..=PLACES).map(place).collect();
+        let value: Vec<f64> = time.iter().map(|time| schedule.value(*time)).collect();
+        let name = quantity.label(units(configuration));
+        let panel = ChartPanel::new(&label(Quantity::Period), &name).x_range(0.0..=last);
+        Some(panel.with(Line::new("", &time, &value).tint(Tint::Black)))
+    };
+    parameters.into_iter().filter_map(course).collect()
 }
 
 /// A thin line from side to side at a value.

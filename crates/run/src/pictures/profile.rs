@@ -9,8 +9,10 @@ use crate::run::Run;
 use crate::scene::units;
 use crate::tables::late_profile;
 
-/// Height of a panel in millimetres: four numbers stand beside it.
-const PANEL_HEIGHT: f64 = 19.5;
+/// Height of a panel in millimetres: a name in words stands beside it.
+const PANEL_HEIGHT: f64 = 28.0;
+/// Name of the granular temperature.
+const TEMPERATURE: &str = "temperature, *T*_{g}/*mc*^{2}";
 /// How far a picture of the tube reaches, in its largest radius.
 const REACH: f64 = 1.12;
 
@@ -51,12 +53,16 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
     };
     let mut panels = vec![
         tube(&bins),
-        curve("*n*_{1} *d*", Tint::Blue, |bin| bin.density).y_range(0.0..),
+        curve("grains per length, *n*_{1} *d*", Tint::Blue, |bin| {
+            bin.density
+        })
+        .y_range(0.0..),
         velocity(&bins, speed),
         temperature(&bins, speed),
     ];
     if bins.iter().any(|bin| bin.wall_pressure.0.is_finite()) {
-        let (pressure, shear) = (format!("*p*{unit}"), format!("*σ*{unit}"));
+        let pressure = format!("pressure, *p*{unit}");
+        let shear = format!("shear, *σ*{unit}");
         panels.push(curve(&pressure, Tint::Orange, |bin| bin.wall_pressure).y_range(0.0..));
         panels.push(curve(&shear, Tint::Green, |bin| bin.wall_shear).with(guide(0.0)));
     }
@@ -74,7 +80,7 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
 fn temperature(bins: &[ProfileBin], speed: f64) -> ChartPanel {
     let unit = speed * speed;
     let of = |bin: &ProfileBin| (bin.temperature.0 / unit, bin.temperature.1 / unit);
-    with_curve(panel("*T*_{g}/*mc*^{2}"), Tint::Purple, bins, of).y_range(0.0..)
+    with_curve(panel(TEMPERATURE), Tint::Purple, bins, of).y_range(0.0..)
 }
 
 /// Adds the curve of a value of each bin with the band of its error.
@@ -100,7 +106,9 @@ fn with_curve(
 fn tube(bins: &[ProfileBin]) -> ChartPanel {
     let x = column(bins, |bin| bin.position);
     let end = REACH * bins.iter().map(|bin| bin.radius).fold(0.0, f64::max);
-    let mut panel = panel("*r*/*d*").y_range(-end..=end).with(guide(0.0));
+    let mut panel = panel("radius, *r*/*d*")
+        .y_range(-end..=end)
+        .with(guide(0.0));
     for side in [1.0, -1.0] {
         let wall = column(bins, |bin| side * bin.radius);
         let outside = vec![side * end; x.len()];
@@ -130,7 +138,7 @@ fn velocity(bins: &[ProfileBin], speed: f64) -> ChartPanel {
     }
     let x = column(&bins, |bin| bin.position);
     let rest = vec![0.0; x.len()];
-    let mut panel = panel("*v_z*/*c*").with(guide(0.0));
+    let mut panel = panel(&label(Quantity::AxialVelocity)).with(guide(0.0));
     for (side, tint) in [(1.0, Tint::Along), (-1.0, Tint::Against)] {
         let on_side = |bin: &ProfileBin| {
             let (value, error) = bin.axial_velocity;
@@ -182,7 +190,7 @@ mod tests {
         };
         let bins = [bin(0.25), bin(0.75)];
         let of = |bin: &ProfileBin| (bin.temperature.0 / 4.0, bin.temperature.1 / 4.0);
-        let expected = with_curve(panel("*T*_{g}/*mc*^{2}"), Tint::Purple, &bins, of);
+        let expected = with_curve(panel(TEMPERATURE), Tint::Purple, &bins, of);
         assert_eq!(temperature(&bins, 2.0), expected.y_range(0.0..));
     }
 
@@ -205,7 +213,7 @@ mod tests {
         let against = [none, none, 0.0, -1.0, -2.0].map(|value| [value; 3]);
         let mut sides = [(Tint::Along, along), (Tint::Against, against)];
         (sides[0].1[0], sides[1].1[3]) = ([0.9, 1.0, 1.1], [-1.25, -1.0, -0.75]);
-        let mut expected = panel("*v_z*/*c*").with(guide(0.0));
+        let mut expected = panel(&label(Quantity::AxialVelocity)).with(guide(0.0));
         for (tint, values) in sides {
             let [lower, value, upper] = [0, 1, 2].map(|bound| values.map(|row| row[bound]));
             expected = expected

@@ -48,6 +48,11 @@ impl Caption {
                 (words, 2.0 * (scene.radius + MARGIN))
             }
         };
+        // Gravity across the tube points down in every picture.
+        let gravity = scene.down.map(|_| "*g* ↓".to_owned());
+        let words = [place].into_iter().chain(gravity);
+        let words: Vec<String> = words.filter(|words| !words.is_empty()).collect();
+        let place = words.join(",   ");
         let instant = instant(frame.time, scene.period, scene.units);
         let notes = if is_moving {
             let flow = match frame.value("flow_rate_ratio") {

@@ -56,7 +56,7 @@ const COVERED: f64 = 0.98;
 
 impl Coloured {
     pub(super) fn new(field: Field, run: &Run, samples: &[Frame]) -> Result<Self, RunError> {
-        let (first, last) = (&samples[0], &samples[samples.len() - 1]);
+        let first = &samples[0];
         if field == Field::AngularVelocity && first.rotation.is_none() {
             return Err(refused(
                 "grains without friction do not rotate, and have no angular velocity",
@@ -80,7 +80,7 @@ impl Coloured {
             if is_moving {
                 format!("{symbol}/*c*")
             } else {
-                format!("{symbol} [*d*/{}]", units.time())
+                format!("{symbol} {}/*d*", units.time())
             }
         };
         let label = match field {
@@ -89,12 +89,12 @@ impl Coloured {
                 format!("axial velocity along the {way}, {}", per("*v_z*"))
             }
             Field::Speed => format!("speed, {}", per("|*v*|")),
-            Field::Diameter => "diameter [*d*]".to_owned(),
+            Field::Diameter => "diameter, *d_i*/*d*".to_owned(),
             Field::AxialDisplacement => "displacement along the wave, Δ*z*/*λ*".to_owned(),
             Field::AngularVelocity => format!("speed of rotation, {}", per("½|*ω*|*d_i*")),
             Field::Position => "position in the wave frame, (*z* \u{2212} *ct*)/*λ*".to_owned(),
             Field::Coordination => "contacts of a grain".to_owned(),
-            Field::Pressure => format!("pressure [{}]", units.pressure()),
+            Field::Pressure => format!("pressure, *p*{}", units.per_pressure()),
         };
         let heading = wall.heading();
         let mut coloured = Self {
@@ -119,12 +119,12 @@ impl Coloured {
             (f64::INFINITY, f64::NEG_INFINITY),
             |(least, largest), it| (least.min(*it), largest.max(*it)),
         );
-        coloured.range = coloured.usual_range(found, cycles(last) - cycles(first));
+        coloured.range = coloured.usual_range(found);
         Ok(coloured)
     }
 
-    /// Values of the first and the last colour that suit the field; `periods` is how long the pictures go on.
-    fn usual_range(&self, mut found: Vec<f64>, periods: f64) -> (f64, f64) {
+    /// Values of the first and the last colour that suit the field.
+    fn usual_range(&self, mut found: Vec<f64>) -> (f64, f64) {
         found.retain(|value| value.is_finite());
         found.sort_unstable_by(f64::total_cmp);
         let at = |part: f64| match found.len() {
@@ -149,7 +149,8 @@ impl Coloured {
             Field::Speed | Field::AngularVelocity => (0.0, at(COVERED).max(1e-9)),
             Field::Diameter => between(at(0.0), at(1.0)),
             Field::AxialDisplacement => {
-                let reach = periods.abs().ceil().max(1.0);
+                let farthest = at(0.0).abs().max(at(1.0).abs());
+                let reach = if farthest > 0.0 { farthest } else { 1.0 };
                 (-reach, reach)
             }
             Field::Position => (0.0, 1.0),

@@ -4,6 +4,7 @@ mod caption;
 mod field;
 mod spheres;
 
+use glam::DVec3;
 use peristalsis_configuration::{Configuration, Elasticity};
 use peristalsis_engine::Wall;
 use peristalsis_figures::{ColourScale, Drawing, Paper, PictureFigure, Units, Width};
@@ -184,6 +185,8 @@ pub struct PictureScene {
     units: Units,
     /// Period of the drive \[t\]; `None` where the wave stands still.
     period: Option<f64>,
+    /// Direction of gravity across the tube; `None` without any there.
+    down: Option<DVec3>,
     /// Distance from the axis that is shown \[d\].
     radius: f64,
     /// Length of the tube that is shown \[d\].
@@ -215,6 +218,7 @@ impl PictureScene {
             look,
             units,
             period: run.configuration().drive.period(),
+            down: down(run.configuration()),
             forces,
             radius: shown_radius(&wall, first, samples),
             wall,
@@ -296,20 +300,28 @@ impl PictureScene {
     /// The view of what [`PictureScene::spheres`] places.
     fn view(&self) -> View {
         let (scale, height) = self.size();
-        let heading = self.wall.heading();
+        let along = self.wall.heading() * DVec3::Z;
+        // As in a snapshot, where no gravity says what is up.
+        let up = self.down.map_or(DVec3::Y, |down| -down);
         let (middle, right) = match self.look.aspect {
-            Aspect::Side => (0.5 * self.shown, heading * glam::DVec3::Z),
-            Aspect::Section(_) => (0.5 * self.wall.length(), -heading * glam::DVec3::Y),
+            Aspect::Side => (0.5 * self.shown, along),
+            Aspect::Section(_) => (0.5 * self.wall.length(), up.cross(along)),
         };
         View {
-            middle: glam::DVec3::new(0.0, 0.0, middle),
+            middle: DVec3::new(0.0, 0.0, middle),
             right,
-            up: glam::DVec3::X,
+            up,
             width: self.look.width,
             height: height as u32,
             scale,
         }
     }
+}
+
+/// Direction of gravity across the tube; `None` without any there.
+fn down(configuration: &Configuration) -> Option<DVec3> {
+    let [x, y, _] = configuration.body.gravity;
+    DVec3::new(x, y, 0.0).try_normalize()
 }
 
 /// Distance from the axis that a picture shows: to the outer side of the widest wall.
