@@ -159,4 +159,4 @@ def title(simulation: Simulation) -> str:
     except AttributeError:
         control = rf"$f^{{\mathrm{{P}}}}$ = {simulation.force_amplitude:g} $m\,d/t^2$"
     density = rf"$\rho$ = {configuration.volume_fraction:.3f}"
-    return rf"{control},  $\dot{{\varepsilon}}$ = {simulation.strain_rate:g},  {density},  $N$ = {configuration.grains}"
+    return rf"{control},  $\dot{{\varepsilon}}$ = {simulation.strain_rate:g} $t^{{-1}}$,  {density},  $N$ = {configuration.grains}"

@@ -50,8 +50,8 @@ _RATIO = r"flow rate, $J/J_{\mathrm{max}}$"
 _PHASE = r"position in the wave frame, $(z - ct)/\lambda$"
 _PARAMETERS = {
     "width": r"width of the bottleneck, $w/d$",
-    "strain_rate": r"strain rate, $\dot{\varepsilon}$ [$1/t$]",
-    "force_amplitude": r"force amplitude, $f^{\mathrm{P}}$ [$m\,d/t^2$]",
+    "strain_rate": r"strain rate, $\dot{\varepsilon}\,t$",
+    "force_amplitude": r"force amplitude, $f^{\mathrm{P}}/(m\,d/t^2)$",
 }
 #: Words and symbol of a column of the profile, its colour, and what it is drawn in where that is not its unit.
 _COLUMNS = {
@@ -186,7 +186,7 @@ def _with_error(value: float, error: float) -> str:
 def profile(simulation: Simulation, column: str = "density", ax: Axes | None = None, *, label: str | None = None, **line: Any) -> Axes:
     """A column of the late profile against the position in the wave frame, with the band of its error where it has one.
 
-    Velocities are drawn in units of the wave's speed c, all else in the unit of its column.
+    Velocities are drawn in units of the wave's speed c, temperatures of m c^2, all else in the unit of its column.
 
     Parameters
     ----------
@@ -227,7 +227,8 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
     unit = table.units[column]
     words, symbol, colour = _COLUMNS.get(column, (column.replace("_", " "), "", BLUE))
     speed = simulation.strain_rate * simulation.configuration["tube.wavelength"]
-    scale, unit = (1.0 / speed, "c") if unit == "d/t" and speed else (1.0, unit)
+    of_wave = {"d/t": (1.0 / speed, "c"), "m d^2/t^2": (1.0 / speed**2, "m c^2")} if speed else {}
+    scale, unit = of_wave.get(unit, (1.0, unit))
     place = np.concatenate([table["position"][-1:] - 1.0, table["position"], table["position"][:1] + 1.0])
 
     def closed(name: str) -> Array:
@@ -254,7 +255,11 @@ def _quantity(words: str, symbol: str, unit: str) -> str:
     if not symbol:
         return words if unit == "1" else f"{words} [{unit}]"
     unit = unit.replace(" ", r"\,")
-    return f"{words}, ${symbol}$" if unit == "1" else f"{words}, ${symbol}/{unit if len(unit) == 1 else f'({unit})'}$"
+    if unit == "1":
+        return f"{words}, ${symbol}$"
+    if unit.startswith("1/"):
+        return rf"{words}, ${symbol}\,{unit[2:]}$"
+    return f"{words}, ${symbol}/{unit if len(unit) == 1 else f'({unit})'}$"
 
 
 def stationary_flow(
