@@ -20,6 +20,8 @@ const SEED: u64 = 20_120_331;
 /// Powers of the strain rate in corrections to scaling that are allowed for: one that fades at large rates, and one that
 /// fades at small ones.
 const CORRECTIONS: [f64; 2] = [-1.0, 1.0];
+/// Height of a panel in millimetres, so that all walls are on one page.
+const COLLAPSE_HEIGHT: f64 = 33.0;
 /// First steps of the exponents.
 const STEPS: [f64; 2] = [0.3, 0.15];
 
@@ -255,14 +257,21 @@ impl Collapsed {
         )
     }
 
+    /// The geometric mean of the strain rates, in which figures scale: with large exponents the numbers stay about one.
+    fn unit(&self) -> f64 {
+        let logarithms = self.curves.iter().map(|curve| curve.parameter.ln());
+        (logarithms.sum::<f64>() / self.curves.len() as f64).exp()
+    }
+
     /// The scaled points of every curve by its strain rate: abscissa and ordinate.
     fn scaled(&self, exponents: [f64; 2]) -> Vec<(f64, Vec<(f64, Uncertain)>)> {
         let widths = self.found.parameters[2..].iter().map(|width| width.value);
         let parameters: Vec<f64> = exponents.into_iter().chain(widths).collect();
+        let unit = self.unit();
         let scaled = |(place, curve): (usize, &Curve)| {
             let points = curve.points.iter().map(|point| {
                 let point =
-                    Scaling::CriticalEach.apply(&parameters, place, curve.parameter, *point);
+                    Scaling::CriticalEach.apply(&parameters, place, curve.parameter / unit, *point);
                 // The scaling works in logarithms.
                 let (x, y) = (point.x.exp(), point.y.exp());
                 (x, Uncertain::normal(y, y * point.error))
@@ -330,13 +339,14 @@ pub(crate) fn chart(
             let title = format!("{of}, exponents of the source");
             panels.push(collapsed.panel(claimed.exponents, &title, claimed_labels, slope));
         }
-        let best = collapsed.exponents().map(|exponent| exponent.value);
-        let [a, b] = best.map(|exponent| number(exponent, 2));
+        let [a, b] = collapsed.exponents();
         let title = format!("{of}, *a* = {a}, *b* = {b}");
-        let labels = ["(*w*_{c} − *w*)/*ε̇*^{*b*}", best_label];
+        let best = [a.value, b.value];
+        let labels = ["(*w*_{c} − *w*)/*r*^{*b*}", best_label];
         panels.push(collapsed.panel(best, &title, labels, slope));
     }
     let curves = found.iter().flat_map(|(_, collapsed)| &collapsed.curves);
     grid(panels.len().min(2), panels)
+        .panel_height(COLLAPSE_HEIGHT)
         .colour_scale(rate_colours(curves.map(|curve| curve.parameter)))
 }

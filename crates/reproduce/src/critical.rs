@@ -279,7 +279,6 @@ pub(crate) struct Divergence {
     pub(crate) censored: usize,
     /// With the relative variance as a power of the distance, too; `None` where the runs do not determine that.
     pub(crate) scatter: Option<ScatterLawFit>,
-    ln_amplitude: f64,
 }
 
 impl Divergence {
@@ -292,7 +291,6 @@ impl Divergence {
                 exponent: fit.exponent,
                 observed: fit.observed,
                 censored: fit.censored,
-                ln_amplitude: fit.ln_amplitude,
                 scatter: Some(fit),
             });
         }
@@ -302,25 +300,9 @@ impl Divergence {
             exponent: fit.exponent,
             observed: fit.observed,
             censored: fit.censored,
-            ln_amplitude: fit.ln_amplitude,
             scatter: None,
         })
     }
-
-    /// Mean transition time at a width; infinite from w_c on.
-    pub(crate) fn mean(&self, width: f64) -> f64 {
-        let distance = self.critical_width.value - width;
-        if distance > 0.0 {
-            (self.ln_amplitude - self.exponent.value * distance.ln()).exp()
-        } else {
-            f64::INFINITY
-        }
-    }
-}
-
-/// A critical width with half of its 95 per cent interval as its error, for bars.
-pub(crate) fn bar(width: &Uncertain) -> Uncertain {
-    Uncertain::normal(width.value, width.interval_95.length() / 2.0)
 }
 
 #[cfg(test)]

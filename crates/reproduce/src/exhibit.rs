@@ -54,9 +54,14 @@ pub(crate) fn cells_of_peaks(flows: &[f64]) -> [String; 2] {
     ]
 }
 
-/// The number of runs by their flow, in so many bins between two flows; `None` without any.
-pub(crate) fn flow_histogram(flows: &[f64], from: f64, to: f64, bins: usize) -> Option<Bars> {
-    let counts = histogram(flows, from, to, bins).ok()?;
+/// Width of the bins of J/Jmax.
+const BIN: f64 = 0.05;
+
+/// The number of runs by their flow, in bins about multiples of [`BIN`] from one flow to another: that of no flow is not
+/// split. `None` without any run.
+pub(crate) fn flow_histogram(flows: &[f64], from: f64, to: f64) -> Option<Bars> {
+    let bins = ((to - from) / BIN).round() as usize + 1;
+    let counts = histogram(flows, from - 0.5 * BIN, to + 0.5 * BIN, bins).ok()?;
     let heights: Vec<f64> = counts.counts.iter().map(|count| *count as f64).collect();
     let any = heights.iter().any(|height| *height > 0.0);
     any.then(|| Bars::new("", &counts.edges, &heights))
@@ -82,16 +87,16 @@ pub(crate) fn flow_panel() -> ChartPanel {
     panel(Quantity::Width, Quantity::FlowRateRatio).y_range(-0.05..=1.1)
 }
 
-/// Points with error bars; an error that is not known is not drawn. `None` without a point.
+/// Points with their 68 per cent intervals as bars; a side that is not known is not drawn. `None` without a point.
 pub(crate) fn points(
     name: &str,
     points: impl IntoIterator<Item = (f64, Uncertain)>,
 ) -> Option<Points> {
     let (x, y): (Vec<f64>, Vec<Uncertain>) = points.into_iter().unzip();
     let values: Vec<f64> = y.iter().map(|y| y.value).collect();
-    let known = |error: f64| if error.is_finite() { error } else { 0.0 };
-    let errors: Vec<f64> = y.iter().map(|y| known(y.error)).collect();
-    (!x.is_empty()).then(|| Points::new(name, &x, &values).y_errors(&errors))
+    let sides = |y: &Uncertain| [y.value - y.interval_68.lower, y.interval_68.upper - y.value];
+    let errors: Vec<[f64; 2]> = y.iter().map(sides).collect();
+    (!x.is_empty()).then(|| Points::new(name, &x, &values).y_sides(&errors))
 }
 
 /// The same, joined.
@@ -102,9 +107,14 @@ pub(crate) fn joined(
     points(name, all).map(Points::joined)
 }
 
-/// A branch as joined points with error bars.
+/// A branch as points with error bars, joined but for its jump.
 pub(crate) fn branch_points(name: &str, branch: &Branch<'_>) -> Option<Points> {
-    joined(name, branch.flows())
+    let points = joined(name, branch.flows())?;
+    let jump = branch.step().filter(|_| branch.jumps());
+    Some(match jump {
+        Some(jump) => points.broken_at(jump.place().value),
+        None => points,
+    })
 }
 
 /// Both branches, filled from rest and open from jammed.
@@ -125,12 +135,12 @@ pub(crate) fn numbered(
     all.filter_map(|(number, points)| Some(points?.series(number)))
 }
 
-/// Numbered series, each coloured by a value.
+/// Series, each coloured by a value.
 pub(crate) fn coloured(
     all: impl IntoIterator<Item = (f64, Option<Points>)>,
 ) -> impl Iterator<Item = Points> {
     let tinted = |(value, points): (f64, Option<Points>)| Some(points?.tint(Tint::Value(value)));
-    numbered(all.into_iter().map(tinted))
+    all.into_iter().filter_map(tinted)
 }
 
 /// Averages over periods in time, coloured by a value.

@@ -65,7 +65,7 @@ impl Near {
     /// Whether alpha = 1 next to w_c: where 1/tau = B d + C d² has a clear linear term and a free power, of as many parameters,
     /// fits no better. Without a clear linear term the local exponent decides.
     pub(crate) fn is_linear(&self, agrees: impl Fn(&Uncertain) -> Option<bool>) -> Option<bool> {
-        let (Some(curved), Some(power)) = (self.curved.filter(is_clear), &self.power) else {
+        let (Some(curved), Some(power)) = (self.judged(), &self.power) else {
             return self.exponent.as_ref().and_then(agrees);
         };
         Some(curved.chi_squared - power.chi_squared < WORSE)
@@ -73,7 +73,7 @@ impl Near {
 
     /// tau (w_c − w) next to w_c, where alpha = 1 leaves a linear term.
     pub(crate) fn amplitude(&self) -> Option<Uncertain> {
-        let curved = self.curved.filter(is_clear)?;
+        let curved = self.judged()?;
         let slope = curved.linear;
         let amplitude = 1.0 / slope.value;
         Some(Uncertain::normal(
@@ -82,12 +82,21 @@ impl Near {
         ))
     }
 
-    /// beta of chi_tau ~ (w_c − w)^−beta, about the w_c of alpha = 1, or of the free power where 1/tau has no linear term.
-    pub(crate) fn variance_exponent(&self) -> Option<Uncertain> {
+    /// 1/tau = B d + C d², where its linear term is clear: the law that is judged.
+    pub(crate) fn judged(&self) -> Option<InverseFit> {
+        self.curved.filter(is_clear)
+    }
+
+    /// chi_tau ~ (w_c − w)^−beta, about the w_c of alpha = 1, or of the free power where 1/tau has no linear term.
+    pub(crate) fn variance_law(&self) -> Option<LawFit> {
         let [width, variance, error] = &self.variance;
         let critical = self.linear_or_free()?;
-        let fit = fit_law(Law::Power, width, variance, error, Some(critical)).ok()?;
-        Some(fit.exponent)
+        fit_law(Law::Power, width, variance, error, Some(critical)).ok()
+    }
+
+    /// beta of that law.
+    pub(crate) fn variance_exponent(&self) -> Option<Uncertain> {
+        Some(self.variance_law()?.exponent)
     }
 
     /// chi_tau (w_c − w)^power, the weighted mean over the widths.

@@ -43,16 +43,15 @@ pub(super) fn colours_of_rates(lines: &[ForceLine<'_>]) -> ColourScale {
 
 /// Both branches of each line, filled from rest and open from jammed, coloured by the strain rate.
 pub(super) fn with_branches(mut panel: ChartPanel, lines: &[&ForceLine<'_>]) -> ChartPanel {
-    for (series, line) in lines.iter().enumerate() {
+    for line in lines {
         let points = |branch: &Branch<'_>| -> Option<Points> {
-            let points = branch_points("", branch)?.series(series);
-            Some(points.tint(Tint::Value(line.strain_rate)))
+            Some(branch_points("", branch)?.tint(Tint::Value(line.strain_rate)))
         };
         panel = panel
             .with_all(points(&line.flow.rest))
             .with_all(points(&line.flow.jammed).map(Points::open));
     }
-    panel
+    panel.with_all([Key::filled("from rest"), Key::open("from jammed")])
 }
 
 /// A finding on forces.

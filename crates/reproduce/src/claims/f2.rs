@@ -169,7 +169,8 @@ fn times(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
     let mut panel = panel(Axis::Width, Axis::TransitionPeriod)
         .y_scale(Scale::Logarithmic)
         .title(&one.name);
-    for (number, line) in one.all.iter().map(|shown| &shown.found).enumerate() {
+    for shown in &one.all {
+        let line = &shown.found;
         let seen = |one: &WidthEnsemble| one.observed >= one.censored && one.observed > 0;
         let time = |one: &WidthEnsemble| {
             let naive = || Uncertain::normal(one.naive_mean.unwrap_or(f64::NAN), 0.0);
@@ -179,19 +180,25 @@ fn times(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
             };
             (one.width, time.scaled(line.strain_rate))
         };
-        let shown = |one: &&WidthEnsemble| !seen(one) || line.resolves(one, RESOLVED);
-        let shown = || line.ensembles.iter().filter(shown);
-        let times: Vec<(f64, Uncertain)> = shown().map(time).collect();
-        let limits: Vec<bool> = shown().map(|one| !seen(one)).collect();
+        let known = |one: &&WidthEnsemble| !seen(one) || line.resolves(one, RESOLVED);
+        let known = || line.ensembles.iter().filter(known);
+        let times: Vec<(f64, Uncertain)> = known().map(time).collect();
+        let limits: Vec<bool> = known().map(|one| !seen(one)).collect();
         let Some(points) = points("", times.iter().copied()) else {
             continue;
         };
         drawn = true;
-        let points = points.lower_limits(&limits).series(number);
+        let points = points.lower_limits(&limits);
         panel = panel.with(points.tint(Tint::Value(line.strain_rate)));
-        if let Some(fit) = &line.fit {
-            let mean = |width| fit.mean(width) * line.strain_rate;
-            panel = panel.with_all(fitted_curve(line, fit.critical_width.value, &times, mean));
+        let near = line.near.as_ref().filter(|_| shown.is_tight());
+        if let Some(law) = near.and_then(Near::judged) {
+            let critical = law.critical_width.value;
+            let curvature = law.quadratic.map_or(0.0, |one| one.value);
+            let mean = |width| {
+                let distance = critical - width;
+                line.strain_rate / (distance * (law.linear.value + curvature * distance))
+            };
+            panel = panel.with_all(fitted_curve(line, critical, &times, mean));
         }
     }
     drawn.then_some(panel)

@@ -95,8 +95,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.chart("amplitudes", &[], against_rate(&amplitudes))?;
     if !found.is_empty() {
-        let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}"];
-        let chart = chart(&found, labels, "*τε̇*^{*a*}", -1.0);
+        let labels = ["(*w*_{c} − *w*)/*r*^{3/2}", "*τr*^{7/2}"];
+        let chart = chart(&found, labels, "*τr*^{*a*}", -1.0);
         draft.chart("collapse-of-transition-times", &[], chart)?;
     }
     Ok(draft.judged(judgement, &summary))
@@ -107,15 +107,35 @@ fn against_rate(walls: &[(String, Vec<(f64, Uncertain)>)]) -> ChartFigure {
     let all = || walls.iter().flat_map(|(_, known)| known);
     let drawn = walls
         .iter()
-        .map(|(name, known)| joined(name, known.iter().copied()));
+        .map(|(name, known)| points(name, known.iter().copied()));
     let amplitude = format!("amplitude, *C*/*d* {}", Units::Linear.rate());
     let mut panel = ChartPanel::new(&label(Axis::StrainRate), &amplitude)
         .x_scale(Scale::Logarithmic)
         .y_scale(Scale::Logarithmic)
         .with_all(numbered(drawn));
-    if let (Some(first), Some((least, most))) = (all().next(), ends(all().map(|one| one.0))) {
-        let at = |rate: f64| first.1.value * (rate / first.0).powf(AMPLITUDE);
-        let curve = Curve::new("*ε̇*^{−2} (talk)", &[least, most], &[at(least), at(most)]);
+    for (series, (_, known)) in walls.iter().enumerate() {
+        if let Some((line, (least, most))) =
+            line_of_rate(known).zip(ends(known.iter().map(|one| one.0)))
+        {
+            let at = |rate: f64| (line.intercept.value + line.slope.value * rate.ln()).exp();
+            let curve = Curve::new("", &[least, most], &[at(least), at(most)]);
+            panel = panel.with(curve.series(series).weight(0.8));
+        }
+    }
+    // The source's power, through the middle of all points, as long as they reach.
+    let lowest = all()
+        .map(|(_, one)| one.value - one.error)
+        .filter(|end| *end > 0.0);
+    let highest = all().map(|(_, one)| one.value + one.error);
+    if let (Some((slowest, fastest)), Some((least, most))) =
+        (ends(all().map(|one| one.0)), ends(lowest.chain(highest)))
+    {
+        let rate = (slowest * fastest).sqrt();
+        let value = (least * most).sqrt();
+        let at_value = |end: f64| rate * (end / value).powf(1.0 / AMPLITUDE);
+        let (from, to) = (at_value(most).max(slowest), at_value(least).min(fastest));
+        let at = |rate_there: f64| value * (rate_there / rate).powf(AMPLITUDE);
+        let curve = Curve::new("*ε̇*^{−2} (talk)", &[from, to], &[at(from), at(to)]);
         panel = panel.with(curve.tint(Tint::Black).pattern(Pattern::Dotted));
     }
     ChartFigure::new(panel)

@@ -38,15 +38,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let summary = PROSE.text("summary", &[]);
     draft.table("exponents", &[], rows);
-    let lines = walls.iter().flat_map(OnWall::fitted);
+    let lines = walls.iter().flat_map(OnWall::tight);
     let variances = grid(2, walls.iter().filter_map(variances))
         .share_y()
-        .colour_scale(rate_colours(lines.map(|(line, _)| line.strain_rate)));
+        .colour_scale(rate_colours(lines.map(|shown| shown.strain_rate)));
     draft.chart("transition-time-variance", &[], variances)?;
     distrust(&mut draft, &collapses);
     if !collapses.is_empty() {
-        let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}"];
-        let scaled = chart(&collapses, labels, "*χ_{τ}ε̇*^{*a*}", -3.0);
+        let labels = ["(*w*_{c} − *w*)/*r*^{3/2}", "*χ_{τ}r*^{7}"];
+        let scaled = chart(&collapses, labels, "*χ_{τ}r*^{*a*}", -3.0);
         draft.chart("collapse-of-variances", &[], scaled)?;
     }
     Ok(draft.judged(judgement, &summary))
@@ -106,7 +106,7 @@ fn variances(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
     let mut panel = ChartPanel::new(&label(Axis::Width), "variance, *χ_{τ}*/*T*^2")
         .y_scale(Scale::Logarithmic)
         .title(&one.name);
-    for (number, (line, fit)) in one.fitted().enumerate() {
+    for line in one.tight().map(|shown| &shown.found) {
         let squared = line.strain_rate * line.strain_rate;
         let variances: Vec<(f64, Uncertain)> = line
             .ensembles
@@ -120,13 +120,15 @@ fn variances(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
             continue;
         };
         drawn = true;
-        panel = panel.with(points.series(number).tint(Tint::Value(line.strain_rate)));
-        if let Some(fit) = fit.scatter {
-            let at = |width| {
-                let (mean, relative) = fit.at(width);
-                mean * mean * relative * squared
+        panel = panel.with(points.tint(Tint::Value(line.strain_rate)));
+        let law = line.near.as_ref().and_then(Near::variance_law);
+        if let Some((law, critical)) = law.and_then(|law| Some((law, law.critical_width?.value))) {
+            let at = |width: f64| {
+                let ln_distance = (critical - width).ln();
+                let ln_variance = law.ln_amplitude.value - law.exponent.value * ln_distance;
+                ln_variance.exp() * squared
             };
-            panel = panel.with_all(fitted_curve(line, fit.critical_width.value, &variances, at));
+            panel = panel.with_all(fitted_curve(line, critical, &variances, at));
         }
     }
     drawn.then_some(panel)

@@ -239,13 +239,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.quantity("length", &[], length);
     let summary = PROSE.text("summary", &[]);
     let saturated = number(100.0 * SATURATED, 0);
-    draft.finding.paragraphs = PROSE.paragraphs("method", values!(saturated));
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(saturated = &saturated));
     let waves = ends(tubes.iter().map(|row| row.number("waves")));
     if let (Some(length), Some((least, most))) = (length, waves) {
         draft.paragraph("extensive", values!(length, least, most));
     }
     draft.table("peaks", &[], rows);
-    draft.chart("second-moment-peak", &[], against_distance(&walls))?;
+    draft.chart(
+        "second-moment-peak",
+        values!(saturated),
+        against_distance(&walls),
+    )?;
     let first = walls.first();
     if let Some((one, shown)) = first.and_then(|one| Some((one, one.all.get(one.all.len() / 2)?))) {
         let wall = &one.name;
@@ -327,13 +331,25 @@ fn against_distance(walls: &[OnWall<Moments>]) -> ChartFigure {
             let critical = shown.found.critical.map_or(f64::NAN, |w_c| w_c.value);
             let peaks = rising.iter().filter(|moment| moment.height().value > 0.0);
             let peaks = peaks.map(|moment| (critical - moment.width, moment.height()));
-            (shown.strain_rate, joined("", peaks))
+            (shown.strain_rate, points("", peaks))
         };
-        ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "peak of *χ_{J}*")
-            .x_scale(Scale::Logarithmic)
-            .y_scale(Scale::Logarithmic)
-            .title(&one.name)
-            .with_all(coloured(one.tight().map(series)))
+        let full = |shown: &Shown<Moments>| {
+            let critical = shown.found.critical?.value;
+            let rising = shown.found.rising().into_iter();
+            let full = rising.map(|one| (critical - one.width, SATURATED * one.bound));
+            let (distance, full): (Vec<f64>, Vec<f64>) = full.filter(|one| one.1 > 0.0).unzip();
+            let curve = Curve::new("", &distance, &full).tint(Tint::Value(shown.strain_rate));
+            (distance.len() > 1).then(|| curve.pattern(Pattern::Dotted).weight(0.7))
+        };
+        ChartPanel::new(
+            "distance, (*w*_{c} − *w*)/*d*",
+            "peak of the second moment, *χ_{J}*",
+        )
+        .x_scale(Scale::Logarithmic)
+        .y_scale(Scale::Logarithmic)
+        .title(&one.name)
+        .with_all(one.tight().filter_map(full))
+        .with_all(coloured(one.tight().map(series)))
     };
     let rates = walls
         .iter()

@@ -103,7 +103,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.chart("stationary-flow", &[], chart)?;
     let histogram = |one: &OnWall<Jump<'_>>| {
         let near = one.tight().flat_map(|one| &one.found.near);
-        let bars = flow_histogram(&near.copied().collect::<Vec<_>>(), -0.05, 1.05, 22)?;
+        let bars = flow_histogram(&near.copied().collect::<Vec<_>>(), -0.05, 1.05)?;
         let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs").with(bars);
         Some(panel.title(&one.name))
     };

@@ -23,6 +23,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         rows.extend(one.all.iter().map(|shown| row(&one.name, shown)));
         let critical = at_rates(one.near(), Near::critical_width);
         let drawn = points(&one.name, critical.iter().copied());
+        // Points that fall on one another are told apart by open marks.
+        let is_open = place % 2 == 1;
+        let drawn = drawn.map(|points| if is_open { points.open() } else { points });
         panel = panel.with_all(drawn.map(|points| points.series(place)));
         let line = straight(&critical);
         if let Some(line) = &line {

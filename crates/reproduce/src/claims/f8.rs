@@ -77,7 +77,7 @@ impl<'a> Density<'a> {
             cell(self.critical),
             cell(
                 self.critical
-                    .map(|width| Uncertain::normal(diameter - width.value, width.error)),
+                    .map(|width| Uncertain::normal(diameter, 0.0) - width),
             ),
             cell(self.exponent()),
             number(self.escaped, 2),
@@ -171,11 +171,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         }
         let wall = wall.name();
         rows.extend(densities.iter().map(|density| density.row(&wall)));
-        panels.extend(panels_of(&wall, &densities));
         let (tight, leaking): (Vec<_>, Vec<_>) = densities.into_iter().partition(Density::is_tight);
         if tight.is_empty() {
             continue;
         }
+        panels.extend(panels_of(&wall, &tight));
         let judged = Judged::of(&tight);
         let is_enough = tight.len() >= LEAST_DENSITIES;
         let each = tight.iter().map(|density| density.statistics);
@@ -201,8 +201,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let compared = COMPARED_WIDTH;
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(compared));
     draft.table("densities", values!(compared), rows);
-    let chart = grid(3, panels);
-    draft.chart("density", &[], chart)?;
+    if !panels.is_empty() {
+        let widths = STRAIGHT;
+        draft.chart("density", values!(widths), grid(3, panels).alike_y())?;
+    }
     Ok(draft.judged(judgement, &summary))
 }
 
@@ -217,20 +219,16 @@ fn panels_of(wall: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {
     let against = |name: &str, value: &dyn Fn(&Density<'_>) -> Option<Uncertain>| {
         let known = densities
             .iter()
-            .filter_map(|density| Some((density.fraction, value(density)?)))
-            .filter(|(_, one)| one.error.is_finite());
+            .filter_map(|density| Some((density.fraction, value(density)?)));
         let panel = ChartPanel::new(&label(Axis::VolumeFraction), name).x_range(0.0..=0.7);
         match points("", known) {
             Some(points) => panel.with(points),
-            None => panel
-                .y_range(0.0..=2.0)
-                .with(Note::corner(Corner::TopLeft, "too few transitions")),
+            None => panel.with(Note::corner(Corner::TopLeft, "too few transitions")),
         }
     };
     [
         flow,
         against(&label(Axis::CriticalWidth), &|density| density.critical),
-        against("exponent, *α*", &|density| density.exponent())
-            .with(Reference::horizontal(EXPONENT)),
+        against("exponent, *α*", &|density| density.exponent()),
     ]
 }

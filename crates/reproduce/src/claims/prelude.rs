@@ -3,7 +3,8 @@
 pub(super) use peristalsis_analysis::Uncertain;
 pub(super) use peristalsis_analysis::number::{decimal as number, with_error};
 pub(super) use peristalsis_figures::chart::{
-    ChartFigure, ChartPanel, LegendPlace, Line as Curve, Pattern, Points, Reference, Tint, Window,
+    ChartFigure, ChartPanel, Key, LegendPlace, Line as Curve, Pattern, Points, Reference, Tint,
+    Window,
 };
 pub(super) use peristalsis_figures::{Quantity as Axis, Scale};
 pub(super) use peristalsis_formats::Table;

@@ -181,9 +181,9 @@ fn figure(lines: &[Line]) -> ChartFigure {
     let mut height = panel("height of the largest fall, Δ*J*/*J*_{max}").y_range(0.0..);
     for (series, lattice) in LATTICES.into_iter().enumerate() {
         let of = || lines.iter().filter(|line| line.lattice == lattice);
-        // Where nothing jumps, the largest fall has no meaning. Bars are the brackets.
+        // Where nothing jumps, the largest fall has no meaning.
         let jumps = of().filter(|line| line.jumps);
-        let jumps = jumps.map(|line| (line.strain_rate, bar(&line.critical)));
+        let jumps = jumps.map(|line| (line.strain_rate, line.critical));
         let exact = |half| Uncertain::normal(half, 0.0);
         let halves = of().filter_map(|line| Some((line.strain_rate, exact(line.half?))));
         let heights = of().filter_map(|line| Some((line.strain_rate, line.height?)));

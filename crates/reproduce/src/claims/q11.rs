@@ -140,6 +140,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q11_NEEDED))
 }
 
+/// How far points at one step are apart.
+const ASIDE: f64 = 1.015;
+
 /// Critical width against the step, one series an integrator, at the usual skin.
 fn against_step(lattice: &str, outcomes: &[Outcome]) -> ChartPanel {
     let series = [false, true].map(|is_adams_bashforth| {
@@ -150,7 +153,13 @@ fn against_step(lattice: &str, outcomes: &[Outcome]) -> ChartPanel {
         let here = outcomes.iter().filter(|Outcome { method: one, .. }| {
             one.is_adams_bashforth == is_adams_bashforth && one.skin == method.skin
         });
-        let widths = here.map(|one| (one.method.time_step, bar(&one.critical)));
+        // Bars of both integrators at one step stand beside each other.
+        let aside = if is_adams_bashforth {
+            ASIDE
+        } else {
+            1.0 / ASIDE
+        };
+        let widths = here.map(|one| (aside * one.method.time_step, one.critical));
         joined(method.integrator(), widths)
     });
     let time_step = "time step, *h* (*k*/*m*)^{1/2}";

@@ -289,15 +289,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let flow = label(Axis::FlowRateRatio);
     let against_occlusion =
-        ChartPanel::new("occlusion 1 − *w*/(2*a*)", &flow).with_all(numbered(series));
+        ChartPanel::new("occlusion, 1 − *w*/(2*a*)", &flow).with_all(numbered(series));
     let series = against.iter().map(|(occlusion, places)| {
         let points = places
             .iter()
             .map(|place| (-1e3 * place.body_force, place.flow));
         joined(&format!("occlusion {}", number(*occlusion, 2)), points)
     });
-    let against_head = ChartPanel::new("back pressure −*g*, 10^{−3} *d* *t*^{−2}", &flow)
-        .with_all(numbered(series));
+    let against_head =
+        ChartPanel::new("back pressure, −10^{3} *g* *t*^{2}/*d*", &flow).with_all(numbered(series));
     draft.chart("closure", &[], grid(2, [against_occlusion, against_head]))?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q13_NEEDED))
 }

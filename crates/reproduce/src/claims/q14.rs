@@ -269,9 +269,12 @@ fn orders(drives: &[&Drive], wave: &Drive) -> ChartPanel {
     };
     let free = series("no back pressure", &Drive::flow);
     let loaded = series("back pressure", &|drive| drive.loaded().map(|it| it.flow));
-    let title = format!("order: {}", names.join(", "));
-    let panel = ChartPanel::new(&title, &label(Axis::FlowRateRatio));
-    let panel = panel.with_all(numbered([free, loaded]));
+    let panel = ChartPanel::new(
+        "order in which the segments close",
+        &label(Axis::FlowRateRatio),
+    )
+    .x_names(&names)
+    .with_all(numbered([free, loaded]));
     match wave.flow() {
         None => panel,
         Some(flow) => {

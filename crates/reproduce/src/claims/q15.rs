@@ -298,18 +298,21 @@ fn change(feeds: &[Point]) -> Option<String> {
     ))
 }
 
+/// Name of the axis of the discharge.
+const DISCHARGE: &str = "discharge, *W* *t*/*m*";
+
 fn outlet_panel(outlets: &[Point], law: &Beverloo) -> ChartPanel {
     let flows = outlets.iter().filter(|point| point.rate.value > 0.0);
     let (least, most) = ends(outlets.iter().map(|point| point.at)).unwrap_or((0.0, 1.0));
     let x = spaced(least.max(law.offset.value), most, 100);
     let y: Vec<f64> = x.iter().map(|outlet| law.rate(*outlet)).collect();
-    ChartPanel::new("clear outlet, *D*/*d*", "discharge, *W* (*m*/*t*)")
+    ChartPanel::new("clear outlet, *D*/*d*", DISCHARGE)
         .with(Curve::new("Beverloo, exponent 5/2", &x, &y).tint(Tint::Black))
         .with_all(points("measured", flows.map(Point::rate)).map(|it| it.series(0)))
 }
 
 fn rate_panel(x: &str, all: &[Point]) -> ChartPanel {
-    ChartPanel::new(x, "discharge, *W* (*m*/*t*)")
+    ChartPanel::new(x, DISCHARGE)
         .y_range(0.0..)
         .with_all(points("measured", all.iter().map(Point::rate)).map(|it| it.series(0)))
 }
@@ -317,7 +320,7 @@ fn rate_panel(x: &str, all: &[Point]) -> ChartPanel {
 fn feed_panel(feeds: &[Point]) -> ChartPanel {
     let most = feeds.iter().map(|point| point.at).fold(0.0, f64::max);
     let fed = [0.0, most];
-    rate_panel("feed (grains/*t*)", feeds).with(
+    rate_panel("feed, grains per *t*", feeds).with(
         Curve::new("all that is fed", &fed, &fed)
             .tint(Tint::Grey)
             .pattern(Pattern::Dashed),

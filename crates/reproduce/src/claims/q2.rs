@@ -81,7 +81,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .filter(|wall| wall.escaped <= MOST_ESCAPED)
             .collect();
         lattices = lattices.min(tight.len());
-        let widths = tight.iter().map(|wall| (wall.depth, bar(&wall.critical)));
+        let widths = tight.iter().map(|wall| (wall.depth, wall.critical));
         let drawn = joined(&format!("*ε̇* = {rate}"), widths);
         panel = panel.with_all(drawn.map(|points| points.series(series)));
         tight.sort_by(|one, other| one.depth.total_cmp(&other.depth));

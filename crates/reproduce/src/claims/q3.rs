@@ -115,9 +115,9 @@ impl Critical {
         ]
     }
 
-    /// The parameter and w_c/(2 a), with half of the 95 per cent interval as bars.
+    /// The parameter and w_c/(2 a).
     fn point(&self) -> (f64, Uncertain) {
-        (self.value, bar(&self.fraction()))
+        (self.value, self.fraction())
     }
 }
 

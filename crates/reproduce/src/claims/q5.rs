@@ -122,10 +122,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let survival = compared
         .iter()
         .filter(|one| (one.line.strain_rate - 0.1).abs() < 0.03)
-        .find_map(|one| survival_panel(one.line, one.scatter.critical_width.value));
-    if let Some((panel, scale)) = survival {
+        .find_map(|one| {
+            let drawn = survival_panel(one.line, one.scatter.critical_width.value)?;
+            Some((one, drawn))
+        });
+    if let Some((of, (panel, scale))) = survival {
         let chart = ChartFigure::new(panel).colour_scale(scale);
-        draft.chart("survival", &[], chart)?;
+        let (wall, rate) = (of.wall, of.line.strain_rate);
+        draft.chart("survival", values!(wall, rate), chart)?;
     }
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &needed))
 }
@@ -139,9 +143,11 @@ fn relative_variance(draft: &mut Draft, compared: &[Compared<'_>]) -> Result<()>
             Some((one.line.strain_rate, Some(points)))
         };
         let drawn: Vec<_> = here.iter().filter_map(of_rate).collect();
-        let panel = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "*χ_{τ}*/*τ*^2")
+        let relative = "relative variance, *χ_{τ}*/*τ*^2";
+        let panel = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", relative)
             .x_scale(Scale::Logarithmic)
             .y_scale(Scale::Logarithmic)
+            .with(Reference::horizontal(1.0).label("pure chance"))
             .title(here[0].wall);
         (!drawn.is_empty()).then(|| panel.with_all(coloured(drawn)))
     };
@@ -152,6 +158,7 @@ fn relative_variance(draft: &mut Draft, compared: &[Compared<'_>]) -> Result<()>
     }
     let chart = grid(2, panels)
         .share_y()
+        .alike_y()
         .colour_scale(rate_colours(rates.into_iter()));
     draft.chart("relative-variance", &[], chart)
 }

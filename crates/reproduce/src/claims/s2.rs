@@ -127,29 +127,26 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.paragraph("method", values!(threshold = GIVEN_WAY));
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
-    let chart = figure(study, &ladder)?;
-    draft.chart("yielding", values!(threshold = GIVEN_WAY), chart)?;
+    let (chart, courses) = match courses(study, &ladder)? {
+        none if none.is_empty() => (ChartFigure::new(times(&ladder)), String::new()),
+        courses => (figure(courses, &ladder), PROSE.text("courses", &[])),
+    };
+    draft.chart("yielding", values!(courses, threshold = GIVEN_WAY), chart)?;
     let statistics = together(judged(&lines));
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
 
 /// J(t) of one run a force, and the time until the jam gives way against the force.
-fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ChartFigure> {
-    let courses = courses(study, ladder)?;
-    let is_coloured = !courses.is_empty();
+fn figure(courses: Vec<Curve>, ladder: &[Rung<'_>]) -> ChartFigure {
     let in_time = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio))
         .y_range(..=1.05)
         .title("from jammed, one run a force")
         .with_all(courses);
-    let in_time = is_coloured.then_some(in_time);
-    let mut chart = grid(2, in_time.into_iter().chain([times(ladder)]));
-    if is_coloured {
-        let first = ladder[0].force;
-        let forces = ladder.iter().map(|rung| rung.force);
-        let axis = label(Axis::ForceAmplitude);
-        chart = chart.colour_scale(colours(&axis, forces, (first, 1.01 * first)));
-    }
-    Ok(chart)
+    let first = ladder[0].force;
+    let forces = ladder.iter().map(|rung| rung.force);
+    let axis = label(Axis::ForceAmplitude);
+    let scale = colours(&axis, forces, (first, 1.01 * first));
+    grid(2, [in_time, times(ladder)]).colour_scale(scale)
 }
 
 /// The flow in time of the first replicate at each force whose time series is at hand.

@@ -133,32 +133,22 @@ fn cells(rows: &[Row<'_>], line: &ForceLine<'_>) -> Vec<String> {
 
 /// Both branches at each strain rate, and the height of the rise against the strain rate.
 fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> ChartFigure {
-    let window = tight
-        .iter()
-        .rev()
-        .filter_map(|line| line.both_ends())
-        .find(|(first, last)| last > first);
-    let title = "filled: from rest, open: from jammed";
-    let title = title.to_owned()
-        + if window.is_some() {
-            "; shaded: both flows"
-        } else {
-            ""
-        };
+    let window = |line: &&ForceLine<'_>| {
+        let (first, last) = line.both_ends().filter(|(first, last)| last > first)?;
+        Some(Window::new("", first, last).tint(Tint::Value(line.strain_rate)))
+    };
+    let windows: Vec<Window> = tight.iter().filter_map(window).collect();
+    let shaded = (!windows.is_empty()).then(|| Key::area("both flows"));
     let flow = with_branches(flow_against_force(), tight)
-        .with_all(window.map(|(first, last)| Window::new("", first, last)))
-        .title(&title);
-    grid(2, [flow].into_iter().chain(heights(tight)))
-        .legend(LegendPlace::Hidden)
-        .colour_scale(colours_of_rates(lines))
+        .with_all(windows)
+        .with_all(shaded);
+    grid(2, [flow].into_iter().chain(heights(tight))).colour_scale(colours_of_rates(lines))
 }
 
 /// The height of the rise against the strain rate; `None` where no height is known.
 fn heights(tight: &[&ForceLine<'_>]) -> Option<ChartPanel> {
     let point = |line: &&ForceLine<'_>| {
-        let height = line.height();
-        let at = height.map(|height| Uncertain::normal(height.value.max(0.0), height.error));
-        let point = points("", at.map(|height| (line.strain_rate, height)));
+        let point = points("", line.height().map(|height| (line.strain_rate, height)));
         let point = match line.kind() {
             Kind::Unclear => point.map(Points::open),
             Kind::Jump | Kind::Smooth => point,
@@ -171,9 +161,8 @@ fn heights(tight: &[&ForceLine<'_>]) -> Option<ChartPanel> {
         "height of the jump, Δ*J*/*J*_{max}",
     )
     .x_scale(Scale::Logarithmic)
-    .y_range(0.0..=1.05)
     .with(Reference::horizontal(LEAST_JUMP_AGAINST_FORCE).label("counts as a jump"))
-    .title("open: forces too far apart to tell");
+    .with(Key::open("forces too far apart to tell"));
     (!points.is_empty()).then(|| panel.with_all(points))
 }
 
@@ -184,7 +173,7 @@ fn peaks(rows: &[Row<'_>], tight: &[&ForceLine<'_>]) -> Vec<ChartPanel> {
     let many: Vec<&&ForceLine<'_>> = tight.iter().filter(|line| 2 * runs(line) >= most).collect();
     let last = many.last().filter(|_| many.len() > 1);
     let panel = |line: &&&ForceLine<'_>| {
-        let bars = flow_histogram(&flows(rows, line), -0.2, 1.0, 24)?;
+        let bars = flow_histogram(&flows(rows, line), -0.2, 1.0)?;
         let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs");
         let panel = panel.title(&format!("*ε̇* = {}", line.strain_rate));
         Some(panel.with(bars.tint(Tint::Blue)))

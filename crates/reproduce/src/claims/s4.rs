@@ -67,13 +67,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if !beyond.is_empty() {
         draft.weakness("only beyond", values!(rates = rates(&beyond)));
     }
+    let zero = Reference::horizontal(0.0);
     let panel = flow_against_force()
         .y_range(-0.12..=0.12)
-        .with(Reference::horizontal(0.0));
+        .with(zero.tint(Tint::Grey).pattern(Pattern::Solid))
+        .with(Reference::horizontal(-LEAST_BACK_FLOW));
     let chart = ChartFigure::new(with_branches(panel, &tight))
-        .legend(LegendPlace::Hidden)
+        .legend(LegendPlace::Below)
         .colour_scale(colours_of_rates(&lines));
-    draft.chart("back-flow", &[], chart)?;
+    let (least, clear) = (LEAST_BACK_FLOW, CLEAR);
+    draft.chart("back-flow", values!(least, clear), chart)?;
     let summary = summary(&backward, &forward);
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }

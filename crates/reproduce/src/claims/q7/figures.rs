@@ -44,9 +44,21 @@ fn flows(name: &str, branch: &Branch<'_>) -> Option<Points> {
     let known = branch.points.iter();
     let mut known: Vec<_> = known.map(|point| (bottleneck(point), point.flow)).collect();
     known.sort_by(|one, other| one.0.value.total_cmp(&other.0.value));
-    let errors: Vec<f64> = known.iter().map(|one| one.0.error).collect();
+    let errors: Vec<f64> = known
+        .iter()
+        .map(|one| 0.5 * one.0.interval_68.length())
+        .collect();
     let points = joined(name, known.iter().map(|one| (one.0.value, one.1)))?;
-    Some(points.x_errors(&errors))
+    let points = points.x_errors(&errors);
+    let jump = branch.step().filter(|_| branch.jumps());
+    let ends = jump.map(|jump| {
+        jump.controls
+            .map(|control| branch.at(control).map(bottleneck))
+    });
+    Some(match ends {
+        Some([Some(one), Some(other)]) => points.broken_at(0.5 * (one.value + other.value)),
+        _ => points,
+    })
 }
 
 /// A Newtonian fluid in a sine of each bottleneck.

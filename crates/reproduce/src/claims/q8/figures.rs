@@ -42,14 +42,19 @@ fn against_force(y_label: &str) -> ChartPanel {
     ChartPanel::new("force amplitude, 10^{3}*f*^{P}/*Yd*^{2}", y_label)
 }
 
-/// A series for each length.
+/// How far points at one force are apart, in the unit of the axis.
+const ASIDE: f64 = 0.05;
+
+/// A series for each length, its points a little aside of those of the others.
 fn by_length(
     at: &AtRate<'_, '_>,
     value: impl Fn(&Ladder<'_>, &Point<'_>) -> Option<Uncertain>,
 ) -> Vec<Points> {
     let series = |(place, ladder): (usize, &&Ladder<'_>)| {
+        let aside = ASIDE * (place as f64 - 1.0);
+        let at = |point: &Point<'_>| 1e3 * point.control + aside;
         let known = ladder.branch.points.iter();
-        let known = known.filter_map(|point| Some((1e3 * point.control, value(ladder, point)?)));
+        let known = known.filter_map(|point| Some((at(point), value(ladder, point)?)));
         let points = joined(&format!("{} waves", ladder.waves), known)?;
         // Curves that fall on one another are told apart by open marks.
         let is_open = place % 2 == 1;

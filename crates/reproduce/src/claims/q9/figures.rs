@@ -60,9 +60,10 @@ fn with_series(
         .characteristics
         .iter()
         .flat_map(|one| &one.branch.points);
-    let largest = all.map(|point| point.control).fold(0.0, f64::max);
+    let shown = all.filter(|point| point.flow.value >= LEAST_FLOW);
+    let largest = shown.map(|point| point.control).fold(0.0, f64::max);
     if largest > 0.0 {
-        panel = panel.x_range(-0.02 * largest..=1.04 * largest);
+        panel = panel.x_range(-0.02 * largest..=1.1 * largest);
     }
     let series = pump.characteristics.iter().filter_map(|one| {
         let known = one.branch.points.iter();
