@@ -84,6 +84,100 @@ fn errors_reach_below_and_above() {
 }
 
 #[test]
+fn errors_downwards_and_upwards_may_differ() {
+    let points = Points::new("a", &[4.0], &[5.0]).y_sides(&[[3.0, f64::INFINITY]]);
+    let drawing = figure(panel().with(points));
+    let bars = segments(&drawing, "error bars");
+    assert_values(&drawing, &bars[0], &[(4.0, 2.0), (4.0, 5.0)]);
+}
+
+#[test]
+fn the_line_that_joins_points_only_hints_at_a_jump() {
+    let x = [1.0, 2.0, 3.0, 4.0];
+    let points = Points::new("a", &x, &x).joined().broken_at(2.5);
+    let drawing = figure(panel().with(points));
+    let joins = drawing
+        .shapes("joins")
+        .into_iter()
+        .map(|shape| match shape {
+            Shape::Path {
+                path,
+                stroke: Some(stroke),
+                ..
+            } => (path.points(), stroke.pattern),
+            other => panic!("joins are lines, not {other:?}"),
+        });
+    let joins: Vec<(Vec<Point>, Pattern)> = joins.collect();
+    let expected = [
+        ([1.0, 2.0], Pattern::Solid),
+        ([3.0, 4.0], Pattern::Solid),
+        ([2.0, 3.0], Pattern::Dotted),
+    ];
+    assert_eq!(joins.len(), expected.len());
+    for ((line, pattern), (ends, expected)) in joins.iter().zip(expected) {
+        assert_values(&drawing, line, &ends.map(|end| (end, end)));
+        assert_eq!(*pattern, expected);
+    }
+}
+
+#[test]
+fn a_value_has_one_marker_in_all_panels_and_the_legend_tells_few_of_them() {
+    let of = |values: &[f64]| {
+        let points = values
+            .iter()
+            .map(|value| Points::new("", &[1.0], &[*value]).tint(Tint::Value(*value)));
+        panel().with_all(points)
+    };
+    let draw = |panels: [ChartPanel; 2]| {
+        let scale = ColourScale::new("rate", 1.0, 20.0);
+        let chart = ChartFigure::grid(2, panels).colour_scale(scale);
+        chart.draw().expect("drawable")
+    };
+    let drawing = draw([of(&[3.0, 7.0]), of(&[7.0])]);
+    let found = marks(&drawing);
+    let corners: Vec<usize> = found.iter().map(|mark| mark.0.steps.len()).collect();
+    assert_eq!(corners[1], corners[2], "7 is alike in both");
+    assert_ne!(corners[0], corners[1]);
+    let words = |drawing: &Drawing| -> Vec<String> {
+        let texts = drawing.texts("legend").into_iter();
+        texts.map(|(_, text)| text.to_owned()).collect()
+    };
+    assert_eq!(words(&drawing), ["rate:", "3", "7"]);
+    assert!(drawing.shapes("colour bar").is_empty());
+    let many: Vec<f64> = (1..=20).map(f64::from).collect();
+    let drawing = draw([of(&many), of(&[7.0])]);
+    assert!(words(&drawing).is_empty());
+    assert!(!drawing.shapes("colour bar").is_empty());
+}
+
+#[test]
+fn panels_in_a_column_have_one_range_where_they_are_alike() {
+    let of = |y: f64| ChartPanel::new("x", "y").with(Points::new("", &[1.0, 2.0], &[0.0, y]));
+    let places = |chart: ChartFigure| {
+        let drawing = chart.draw().expect("drawable");
+        let found = marks(&drawing);
+        [0, 1].map(|panel| found[panel].1[0].y - found[panel].1[1].y)
+    };
+    let [first, second] = places(ChartFigure::grid(1, [of(1.0), of(10.0)]));
+    assert!((first - second).abs() < 1e-9);
+    let [first, second] = places(ChartFigure::grid(1, [of(1.0), of(10.0)]).alike_y());
+    assert!((10.0 * first - second).abs() < 1e-9);
+}
+
+#[test]
+fn an_axis_of_names_has_them_at_whole_numbers() {
+    let names = ["one", "other"].map(str::to_owned);
+    let panel = ChartPanel::new("x", "y").y_range(0.0..=1.0).x_names(&names);
+    let drawing = figure(panel.with(Points::new("", &[1.0, 2.0], &[0.5, 0.5])));
+    let texts = drawing.texts("axes").into_iter();
+    let texts: Vec<&str> = texts.map(|(_, text)| text).collect();
+    assert!(
+        names.iter().all(|name| texts.contains(&&**name)),
+        "{texts:?}"
+    );
+}
+
+#[test]
 fn a_lower_limit_is_open_and_has_an_arrow_upwards() {
     let points = Points::new("a", &[2.0, 4.0], &[3.0, 5.0]).lower_limits(&[false, true]);
     let drawing = figure(panel().with(points));

@@ -217,7 +217,11 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
         panel = panel.with(transition.tint(Tint::Vermillion).pattern(Pattern::Solid));
     }
     let driven = driven(configuration, last);
-    let height = if driven.is_empty() { HEIGHT } else { LOW_HEIGHT };
+    let height = if driven.is_empty() {
+        HEIGHT
+    } else {
+        LOW_HEIGHT
+    };
     ChartFigure::grid(1, [panel].into_iter().chain(driven))
         .title(&title(configuration))
         .description("Flow rate against time in periods of the wave.")
