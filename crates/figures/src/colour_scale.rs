@@ -46,11 +46,12 @@ const LOW_BAR_PART: f64 = 0.36;
 const SPACE_ABOVE: f64 = 5.0;
 const BAR_STEPS: usize = 128;
 /// Gap between a frame and the bar at its right.
-const BAR_GAP: f64 = 7.0;
+pub(crate) const BAR_GAP: f64 = 7.0;
 const ROOM_PER_LABEL: f64 = 13.5;
 const MOST_LABELS: usize = 6;
-/// From one line of a label to the next.
+/// From one line of a label to the next, and how many have room beside a bar.
 const LINE: f64 = 8.8;
+const LINES_BESIDE_BAR: f64 = 2.0;
 /// Gap between the numbers of a bar across.
 const ROOM_BETWEEN_LABELS: f64 = 8.0;
 /// Part of the sequential palette without the colours that would be lost as lines on white.
@@ -192,8 +193,7 @@ impl ColourScale {
         BAR_GAP + BAR_WIDTH + TICK_GAP + widest(&self.ticks_up(height)) + label + 3.0
     }
 
-    /// Draws the bar across, its label before it, in two lines where it would reach further left than `from`, and its
-    /// numbers below.
+    /// Draws the bar across, its label before it, in lines that reach no further left than `from`, and its numbers below.
     pub(crate) fn draw_bar_across(
         &self,
         drawing: &mut Drawing,
@@ -213,15 +213,40 @@ impl ColourScale {
         outline(layer, area, segments, ink);
         let middle = area.top + area.height / 2.0 + DIGIT_HEIGHT * LABEL_SIZE / 2.0;
         let end = area.left - BAR_GAP;
-        let lines = match Text::new(&self.label, LABEL_SIZE).width <= end - from {
-            true => vec![&*self.label],
-            false => broken(&self.label),
-        };
+        let lines = self.label_lines(end - from);
         for (number, line) in lines.iter().enumerate() {
             let below = (number as f64 - 0.5 * (lines.len() - 1) as f64) * LINE;
             let text = Text::fitted(line, LABEL_SIZE, end - from);
             layer.text((end, middle + below), Anchor::End, text, ink);
         }
+    }
+
+    /// The label in lines that the room holds: its words, and where they leave no room beside them, its symbol below.
+    fn label_lines(&self, room: f64) -> Vec<String> {
+        let symbol = self
+            .label
+            .rfind(", ")
+            .map_or(self.label.len(), |place| place + 2);
+        let (words, symbol) = self.label.split_at(symbol);
+        let pieces = words
+            .split_whitespace()
+            .chain((!symbol.is_empty()).then_some(symbol));
+        let mut lines: Vec<String> = Vec::new();
+        for piece in pieces {
+            let longer = lines.last().map(|line| format!("{line} {piece}"));
+            let fitting = longer.filter(|line| Text::new(line, LABEL_SIZE).width <= room);
+            match (lines.last_mut(), fitting) {
+                (Some(last), Some(longer)) => *last = longer,
+                _ => lines.push(piece.to_owned()),
+            }
+        }
+        lines
+    }
+
+    /// How much further down than usual a bar stands so that all lines of its label have room.
+    pub(crate) fn drop(&self, room: f64) -> f64 {
+        let lines = self.label_lines(room).len();
+        0.5 * LINE * (lines as f64 - LINES_BESIDE_BAR).max(0.0)
     }
 
     /// Draws the bar with its label in the middle below panels; returns the height that it takes.
@@ -265,18 +290,6 @@ impl ColourScale {
         let fraction = |step: usize| (step as f64 + 0.5) / BAR_STEPS as f64;
         (0..BAR_STEPS).map(move |step| self.colour_at(fraction(step)))
     }
-}
-
-/// A label in two lines: words and symbol, or else about equal parts.
-fn broken(label: &str) -> Vec<&str> {
-    let after_comma = label.rfind(", ").map(|place| place + 1);
-    let middle = label.len() / 2;
-    let spaces = label.match_indices(' ').map(|(place, _)| place);
-    let place = after_comma.or_else(|| spaces.min_by_key(|place| place.abs_diff(middle)));
-    let Some((first, second)) = place.map(|place| label.split_at(place)) else {
-        return vec![label];
-    };
-    vec![first, second.trim_start()]
 }
 
 /// Draws the outline of a bar, and its ticks.
@@ -339,12 +352,14 @@ mod tests {
     }
 
     #[test]
-    fn a_long_label_is_broken_before_its_symbol() {
-        let label = "axial velocity along the wave, *v_z*/*c*";
-        let lines = ["axial velocity along the wave,", "*v_z*/*c*"];
-        assert_eq!(broken(label), lines);
-        assert_eq!(broken("contacts of a grain"), ["contacts", "of a grain"]);
-        assert_eq!(broken("*Y*"), ["*Y*"]);
+    fn a_long_label_takes_lines_and_its_symbol_stays_whole() {
+        let scale = ColourScale::new("position in the wave frame, (*z* − *ct*)/*λ*", 0.0, 1.0);
+        assert_eq!(scale.label_lines(400.0), [&*scale.label]);
+        let two = ["position in the wave frame,", "(*z* − *ct*)/*λ*"];
+        assert_eq!(scale.label_lines(110.0), two);
+        let three = ["position in the", "wave frame,", "(*z* − *ct*)/*λ*"];
+        assert_eq!(scale.label_lines(60.0), three);
+        assert!(scale.drop(110.0) == 0.0 && scale.drop(60.0) > 0.0);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A picture of pixels with its key: notes, marks, a scale and a bar of colours.
 
 use crate::colour::{BLACK, Colour, WHITE};
-use crate::colour_scale::ColourScale;
+use crate::colour_scale::{BAR_GAP, ColourScale};
 use crate::drawing::{Anchor, Drawing, Image, Layer, Stroke};
 use crate::error::FigureError;
 use crate::geometry::{Path, Point, Rectangle};
@@ -89,7 +89,8 @@ const BAR_PART: f64 = 0.3;
 const ROW: f64 = BAR_HEIGHT + TICK_SIZE + 4.0;
 /// Gap below the picture.
 const GAP_BELOW: f64 = 6.0;
-/// Space around the scale.
+/// Space between the scale and its label, and around both.
+const SCALE_GAP: f64 = 4.0;
 const ROOM_BESIDE_SCALE: f64 = 12.0;
 /// Half the width of a mark, and its height.
 const MARK: (f64, f64) = (2.2, 3.4);
@@ -119,7 +120,12 @@ impl PictureFigure<'_> {
         let above = whole(self.space_above());
         let size = (columns as f64 / scale, rows as f64 / scale);
         let area = Rectangle::new((0.0, above), size);
-        let height = area.bottom() + whole(self.space_below());
+        let (bar_left, bar_width) = self.place_of_bars(area.width);
+        let free_from = self.end_of_scale(area.width);
+        let room = bar_left - BAR_GAP - free_from;
+        let drops = self.colours.iter().map(|colours| colours.drop(room));
+        let drops: Vec<f64> = drops.collect();
+        let height = area.bottom() + whole(self.space_below() + drops.iter().sum::<f64>());
         let mut drawing = Drawing::new(area.width, height, self.title);
         (drawing.paper, drawing.pixels_per_point) = (page, scale);
         drawing.layer("picture", None).image(Image {
@@ -130,16 +136,31 @@ impl PictureFigure<'_> {
         });
         self.draw_notes(drawing.layer("notes", None), area.width, ink);
         self.draw_marks(drawing.layer("marks", None), area, faint_ink);
-        let free_from = self.draw_scale_bar(drawing.layer("scale", None), area, ink);
-        let width = BAR_WIDTH.min(BAR_PART * area.width);
-        let overhangs = self.colours.iter().map(|colours| colours.overhang(width));
-        let left = area.width - EDGE - overhangs.fold(0.0, f64::max) - width;
-        for (number, colours) in self.colours.iter().enumerate() {
-            let top = area.bottom() + GAP_BELOW + number as f64 * ROW;
-            let bar = Rectangle::new((left, top), (width, BAR_HEIGHT));
+        self.draw_scale_bar(drawing.layer("scale", None), area, ink);
+        let mut top = area.bottom() + GAP_BELOW;
+        for (colours, drop) in self.colours.iter().zip(drops) {
+            top += drop;
+            let bar = Rectangle::new((bar_left, top), (bar_width, BAR_HEIGHT));
             colours.draw_bar_across(&mut drawing, bar, free_from, ink);
+            top += ROW;
         }
         Ok(drawing)
+    }
+
+    /// Left end and width of the bars of colours on a page of some width.
+    fn place_of_bars(&self, page: f64) -> (f64, f64) {
+        let width = BAR_WIDTH.min(BAR_PART * page);
+        let overhangs = self.colours.iter().map(|colours| colours.overhang(width));
+        let left = page - EDGE - overhangs.fold(0.0, f64::max) - width;
+        (left, width)
+    }
+
+    /// Where there is room at the right of the scale.
+    fn end_of_scale(&self, page: f64) -> f64 {
+        self.scale_bar.map_or(EDGE, |bar| {
+            let text = Text::new(&bar.label, LABEL_SIZE);
+            EDGE + bar.length * page + SCALE_GAP + text.width + ROOM_BESIDE_SCALE
+        })
     }
 
     fn space_above(&self) -> f64 {
@@ -197,10 +218,9 @@ impl PictureFigure<'_> {
         }
     }
 
-    /// Draws the scale, and answers where there is room at its right.
-    fn draw_scale_bar(&self, layer: &mut Layer, area: Rectangle, ink: Colour) -> f64 {
+    fn draw_scale_bar(&self, layer: &mut Layer, area: Rectangle, ink: Colour) {
         let Some(bar) = self.scale_bar else {
-            return EDGE;
+            return;
         };
         let (left, middle) = (EDGE, area.bottom() + GAP_BELOW + 0.5 * BAR_HEIGHT);
         let right = left + bar.length * area.width;
@@ -210,10 +230,8 @@ impl PictureFigure<'_> {
         layer.stroke(Path::segments(segments), Stroke::solid(ink, 1.0));
         let baseline = middle + 0.5 * DIGIT_HEIGHT * LABEL_SIZE;
         let text = Text::new(&bar.label, LABEL_SIZE);
-        let start = right + 4.0;
-        let end = start + text.width + ROOM_BESIDE_SCALE;
-        layer.text((start, baseline), Anchor::Start, text, ink);
-        end
+        let start = (right + SCALE_GAP, baseline);
+        layer.text(start, Anchor::Start, text, ink);
     }
 }
 
