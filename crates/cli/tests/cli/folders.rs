@@ -48,7 +48,14 @@ fn nested_relative_folders_are_made_and_filled() {
     ];
     assert_labels(&place.path("a/b/c/flow.svg"), &flow);
     let position = "position in the wave frame, (z − ct)/λ";
-    let profile = ["r/d", "n1 d", "vz/c", "Tg/mc2", "(d)", position];
+    let profile = [
+        "radius, r/d",
+        "grains per length, n1 d",
+        "axial velocity, vz/c",
+        "temperature, Tg/mc2",
+        "(d)",
+        position,
+    ];
     assert_labels(&place.path("a/b/c/profile.svg"), &profile);
 }
 

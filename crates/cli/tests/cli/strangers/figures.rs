@@ -26,7 +26,7 @@ fn a_profile_names_its_units_and_no_symbol_twice() {
         "run --preset frictional {settings} --out r --quiet"
     ));
     let svg = std::fs::read_to_string(place.path("r/profile.svg")).unwrap();
-    for label in ["Tg/mc2", "p/Y", "σ/Y"] {
+    for label in ["temperature, Tg/mc2", "pressure, p/Y", "shear, σ/Y"] {
         assert!(svg.contains(&format!("aria-label=\"{label}\"")), "{label}");
     }
     assert!(!svg.contains("τ"));
