@@ -31,6 +31,13 @@ pub struct WidthEnsemble {
     pub fit: Option<LifetimeFit>,
 }
 
+impl WidthEnsemble {
+    /// Part of the runs with an observed transition.
+    pub fn observed_fraction(&self) -> f64 {
+        self.observed as f64 / (self.observed + self.censored) as f64
+    }
+}
+
 /// Sorts a table of runs by width and estimates the transition times of each.
 ///
 /// One row per run, `width` beside `transitions`; answers in order of width. Columns for [`fit_law`](crate::fit_law) and

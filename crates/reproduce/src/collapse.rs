@@ -11,7 +11,9 @@ use crate::critical::Line;
 use crate::draft::Draft;
 use crate::exhibit::{cell_of, coloured, ends, grid, points, probability, rate_colours};
 use crate::finding::{Quantity, ReportTable};
-use crate::thresholds::{BY_CHANCE, COLLAPSED_WITHIN, NO_COLLAPSE_BEYOND, OVERLAP, RESOLVED};
+use crate::thresholds::{
+    BY_CHANCE, COLLAPSED_WITHIN, MOSTLY_SEEN, NO_COLLAPSE_BEYOND, OVERLAP, RESOLVED,
+};
 use crate::walls::OnWall;
 
 /// Searches for the best collapse, and the seed of their starts.
@@ -57,7 +59,7 @@ pub(crate) fn collapse(
     let mut curves = Curves::default();
     for (line, fit) in wall.fitted() {
         let known = |one: &&WidthEnsemble| {
-            one.observed >= 3 * one.censored
+            one.observed_fraction() >= MOSTLY_SEEN
                 && one.observed > 2
                 && one.width < fit.critical_width.value
                 && line.resolves(one, RESOLVED)

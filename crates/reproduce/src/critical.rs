@@ -10,7 +10,7 @@ use crate::branch::{Branch, Control};
 use crate::finding::Statistics;
 use crate::near::Near;
 use crate::row::{Row, Start, behind, by_strain_rate, grouped, nearest_threshold};
-use crate::thresholds::{HIGHER, RESOLVED, SHARP, STRAIGHT, WINDOW};
+use crate::thresholds::{HIGHER, RESOLVED, SEEN, SHARP, STRAIGHT, WINDOW};
 use crate::walls::{AtRate, OnWall, Runs};
 
 /// The studies that [`OnWall::all`] reads.
@@ -209,7 +209,7 @@ impl<'a> Line<'a> {
         let usable: Vec<f64> = self
             .ensembles
             .iter()
-            .filter(|ensemble| ensemble.observed >= ensemble.censored)
+            .filter(|ensemble| ensemble.observed_fraction() >= SEEN)
             .filter(|ensemble| self.resolves(ensemble, RESOLVED))
             .map(|ensemble| ensemble.width)
             .collect();

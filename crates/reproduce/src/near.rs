@@ -6,7 +6,7 @@ use peristalsis_analysis::{
 
 use crate::critical::Line;
 use crate::estimates::columns;
-use crate::thresholds::{NEAR, STRAIGHT, WINDOW, WORSE};
+use crate::thresholds::{NEAR, SEEN, STRAIGHT, WINDOW, WORSE};
 
 /// 1/tau at the widths next to w_c, and the laws fitted to it.
 #[derive(Clone, Debug)]
@@ -35,7 +35,7 @@ impl Near {
     pub(crate) fn of(line: &Line<'_>) -> Option<Self> {
         let from = line.window_from(WINDOW)?;
         let usable = line.ensembles.iter();
-        let usable = usable.filter(|one| one.width >= from && one.observed >= one.censored);
+        let usable = usable.filter(|one| one.width >= from && one.observed_fraction() >= SEEN);
         let fits = usable.filter_map(|one| Some((one.width, one.fit?)));
         let fits: Vec<_> = fits.filter(|(_, fit)| fit.mean.error > 0.0).collect();
         let times = columns(fits.iter().map(|(width, fit)| (*width, fit.mean)), 0.0);

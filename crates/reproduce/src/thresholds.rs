@@ -56,6 +56,13 @@ pub(crate) const MOST_RATES: f64 = 0.75;
 
 // Transition times.
 
+/// Part of the runs at a width with a transition from which on their mean time counts: censored runs bear on it through the
+/// likelihood.
+pub(crate) const SEEN: f64 = 0.5;
+/// The same for the variance of their times, and for a collapse; more, since the likelihood takes the shape of the distribution
+/// of long times for granted.
+pub(crate) const MOSTLY_SEEN: f64 = 0.75;
+
 /// Widths closest to the critical one that a fit uses, of those at which at least half of the runs had a transition: nearer,
 /// the four parameters of the fit have too few widths; farther, the power law need not hold.
 pub(crate) const WINDOW: usize = 6;
@@ -89,8 +96,6 @@ pub(crate) const FAST: f64 = 0.5;
 pub(crate) const HIGHER: f64 = 0.7;
 /// Parts of the tube's diameter by which the critical width may change from the one threshold to the other.
 pub(crate) const SHARP: f64 = 0.01;
-/// J/Jmax at which a sweep of the force passes from one flow to the other: midway between them.
-pub(crate) const PASSED: f64 = 0.5;
 
 // What differs between two flows.
 

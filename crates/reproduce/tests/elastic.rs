@@ -161,13 +161,13 @@ impl Tube {
 
     /// Everything, the frictionless grains in a tube of their own law.
     fn evidence(self, frictionless: Self) -> Evidence {
-        let (mut ladder, mut unjammed) = (empty(), empty());
+        let (mut jams, mut unjammed) = (empty(), empty());
         for force in FORCES {
             let many = Self {
                 replicates: 30,
                 ..self
             };
-            many.replicate(&mut ladder, (PICTURED, force, Start::Jammed), &[], &[]);
+            many.replicate(&mut jams, (PICTURED, force, Start::Jammed), &[], &[]);
         }
         for rate in [0.018, 0.1] {
             frictionless.replicate(&mut unjammed, (rate, 0.0, Start::Rest), &[], &[]);
@@ -177,7 +177,7 @@ impl Tube {
             ("elastic-branches", &self.branches(&RATES)),
             ("elastic-frictionless", &frictionless.branches(&RATES)),
             ("elastic-flow", &self.pictures(frictionless)),
-            ("elastic-yielding", &ladder),
+            ("elastic-yielding", &jams),
             ("unjammed-frictionless", &unjammed),
         ])
     }

@@ -154,8 +154,8 @@ fn each_corner_is_told_by_what_it_does() {
     assert_verdict(&open, Verdict::Open);
 }
 
-/// Ladders of forces in three lengths at two strain rates; `variance(waves)` at the largest.
-fn ladders(variance: impl Fn(f64) -> f64) -> Rows {
+/// Runs at several forces in three lengths at two strain rates; `variance(waves)` at the largest.
+fn sizes(variance: impl Fn(f64) -> f64) -> Rows {
     let mut rows = Rows::with(&TUBE);
     for rate in [1e-3, 4.01e-3] {
         for waves in [2.0, 4.0, 8.0] {
@@ -211,7 +211,7 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
     let finding = examine(
         "Q8",
         &[
-            ("small-speed-size", &ladders(|waves| 0.02 / waves)),
+            ("small-speed-size", &sizes(|waves| 0.02 / waves)),
             ("sweep-up", &sweeps(2.0, 7.0, |periods| 4.0 + 5.0 / periods)),
             (
                 "sweep-down",
@@ -227,7 +227,7 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
     let finding = examine(
         "Q8",
         &[
-            ("small-speed-size", &ladders(|_| 0.02)),
+            ("small-speed-size", &sizes(|_| 0.02)),
             ("sweep-up", &sweeps(2.0, 7.0, |_| 5.0)),
             ("sweep-down", &sweeps(7.0, 2.0, |_| 4.0)),
         ],
@@ -236,7 +236,7 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
     assert!(value(&finding, loop_exponent).abs() < 1e-9);
     assert_says(&finding.summary, "1.0 ± ");
     // Without sweeps the question stays open.
-    let alone = examine("Q8", &[("small-speed-size", &ladders(|_| 0.02))]);
+    let alone = examine("Q8", &[("small-speed-size", &sizes(|_| 0.02))]);
     assert_verdict(&alone, Verdict::Open);
     // So it does without lengths, but the sweeps are told and drawn; and with a fluctuation that is not known.
     let (up, down) = (sweeps(2.0, 7.0, |_| 5.0), sweeps(7.0, 2.0, |_| 4.0));
@@ -244,7 +244,7 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
     assert_verdict(&swept, Verdict::Open);
     assert_says(&swept.summary, "1.0 ± ");
     assert_eq!((swept.figures.len(), swept.tables.len()), (1, 1));
-    let drifting = ladders(|_| f64::NAN);
+    let drifting = sizes(|_| f64::NAN);
     let drifting = examine("Q8", &[("small-speed-size", &drifting), ("sweep-up", &up)]);
     assert_eq!(
         (drifting.verdict, drifting.figures.len()),

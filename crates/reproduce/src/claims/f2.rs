@@ -171,7 +171,7 @@ fn times(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
         .title(&one.name);
     for shown in &one.all {
         let line = &shown.found;
-        let seen = |one: &WidthEnsemble| one.observed >= one.censored && one.observed > 0;
+        let seen = |one: &WidthEnsemble| one.observed_fraction() >= SEEN;
         let time = |one: &WidthEnsemble| {
             let naive = || Uncertain::normal(one.naive_mean.unwrap_or(f64::NAN), 0.0);
             let time = match seen(one) {

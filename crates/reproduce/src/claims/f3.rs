@@ -26,7 +26,7 @@ fn power_at(one: &OnWall<Line<'_>>, distance: f64) -> Option<Uncertain> {
             let reduced = (critical.value - one.width) * line.strain_rate.powf(-1.5);
             (reduced / distance).log2().abs()
         };
-        let seen = |one: &&WidthEnsemble| one.observed >= one.censored && apart(one) <= 0.5;
+        let seen = |one: &&WidthEnsemble| one.observed_fraction() >= SEEN && apart(one) <= 0.5;
         let those = line.ensembles.iter().filter(seen);
         let nearest = those.min_by(|one, other| apart(one).total_cmp(&apart(other)))?;
         let (mean, width) = (nearest.fit?.mean, critical.value - nearest.width);

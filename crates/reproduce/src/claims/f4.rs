@@ -111,7 +111,7 @@ fn variances(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
         let variances: Vec<(f64, Uncertain)> = line
             .ensembles
             .iter()
-            .filter(|one| one.observed >= one.censored && line.resolves(one, RESOLVED))
+            .filter(|one| one.observed_fraction() >= SEEN && line.resolves(one, RESOLVED))
             .filter_map(|one| Some((one.width, one.fit?.variance)))
             .filter(|(_, variance)| variance.value > 0.0)
             .map(|(width, variance)| (width, variance.scaled(squared)))

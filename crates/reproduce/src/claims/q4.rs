@@ -32,7 +32,7 @@ impl<'a> Tube<'a> {
         let ensembles = ensembles_by_width(Family::Gamma, &width, &transitions).unwrap_or_default();
         let seen = ensembles
             .iter()
-            .filter(|one| one.observed > 2 * one.censored);
+            .filter(|one| one.observed_fraction() >= MOSTLY_SEEN);
         let times = seen.filter_map(|one| {
             let fit = one.fit?;
             let relative = fit.variance.value / fit.mean.value.powi(2);

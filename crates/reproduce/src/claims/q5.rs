@@ -69,7 +69,7 @@ impl<'a> Compared<'a> {
         let critical = self.scatter.critical_width.value;
         let ensembles = self.line.ensembles.iter();
         ensembles
-            .filter(|one| one.observed > 2 * one.censored && one.width < critical)
+            .filter(|one| one.observed_fraction() >= MOSTLY_SEEN && one.width < critical)
             .filter_map(|one| {
                 let fit = one.fit?;
                 let squared = fit.mean.value.powi(2);
@@ -172,7 +172,7 @@ fn survival_panel(line: &Line<'_>, critical: f64) -> Option<(ChartPanel, ColourS
     let mut widths = Vec::new();
     for ensemble in &line.ensembles {
         let is_resolved = line.resolves(ensemble, 10.0);
-        if ensemble.observed <= 2 * ensemble.censored || !is_resolved || ensemble.width >= critical
+        if ensemble.observed_fraction() < MOSTLY_SEEN || !is_resolved || ensemble.width >= critical
         {
             continue;
         }

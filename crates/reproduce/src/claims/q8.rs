@@ -16,14 +16,14 @@ const LATE: f64 = 0.5;
 
 /// The stationary flow against the force in a tube of one length: runs that drift are left out, of the flow and of its
 /// fluctuation.
-struct Ladder<'a> {
+struct Size<'a> {
     rate: f64,
     waves: f64,
     branch: Branch<'a>,
     rows: Vec<Row<'a>>,
 }
 
-impl<'a> Ladder<'a> {
+impl<'a> Size<'a> {
     /// The series of forces of all strain rates and lengths.
     fn all_of(rows: Vec<Row<'a>>) -> Vec<Self> {
         grouped(rows, |row| (row.strain_rate(), row.number("waves")))
@@ -177,20 +177,20 @@ fn exponent(points: impl Iterator<Item = (f64, Uncertain)>) -> Option<Uncertain>
 /// What was found at one strain rate.
 struct AtRate<'b, 'a> {
     rate: f64,
-    ladders: Vec<&'b Ladder<'a>>,
+    sizes: Vec<&'b Size<'a>>,
     /// By ascending length.
     loops: Vec<&'b Loop>,
 }
 
 impl<'b, 'a> AtRate<'b, 'a> {
-    fn all_of(ladders: &'b [Ladder<'a>], loops: &'b [Loop]) -> Vec<Self> {
-        let of_ladders = ladders.iter().map(|one| one.rate);
-        let rates = of_ladders.chain(loops.iter().map(|one| one.rate));
+    fn all_of(sizes: &'b [Size<'a>], loops: &'b [Loop]) -> Vec<Self> {
+        let of_sizes = sizes.iter().map(|one| one.rate);
+        let rates = of_sizes.chain(loops.iter().map(|one| one.rate));
         grouped(rates, |rate| *rate)
             .into_iter()
             .map(|(rate, _)| Self {
                 rate,
-                ladders: ladders.iter().filter(|one| one.rate == rate).collect(),
+                sizes: sizes.iter().filter(|one| one.rate == rate).collect(),
                 loops: loops.iter().filter(|one| one.rate == rate).collect(),
             })
             .collect()
@@ -199,14 +199,14 @@ impl<'b, 'a> AtRate<'b, 'a> {
     /// Whether there are as many lengths of tubes and of sweeps as an answer takes.
     fn is_complete(&self) -> bool {
         let closed = self.loops.iter().filter(|one| one.width().is_some());
-        self.ladders.len() >= LEAST_LENGTHS && closed.count() >= LEAST_LENGTHS
+        self.sizes.len() >= LEAST_LENGTHS && closed.count() >= LEAST_LENGTHS
     }
 
     /// The force at which tubes of all lengths are steady and fluctuate most together.
     fn fluctuating_force(&self) -> Option<f64> {
-        let first = self.ladders.first()?.branch.points.iter();
+        let first = self.sizes.first()?.branch.points.iter();
         let sum = |force: f64| -> Option<f64> {
-            let each = self.ladders.iter();
+            let each = self.sizes.iter();
             each.map(|one| Some(one.fluctuation_at(force)?.value)).sum()
         };
         let known = first.filter_map(|point| Some((point.control, sum(point.control)?)));
@@ -216,7 +216,7 @@ impl<'b, 'a> AtRate<'b, 'a> {
 
     /// What it shows.
     fn words(&self) -> String {
-        let rises: Vec<String> = self.ladders.iter().filter_map(|one| one.words()).collect();
+        let rises: Vec<String> = self.sizes.iter().filter_map(|one| one.words()).collect();
         let widths: Vec<String> = self.loops.iter().filter_map(|one| one.words()).collect();
         let rises = match &*rises.join(", ") {
             "" => PROSE.text("no rises", &[]),
@@ -232,15 +232,15 @@ impl<'b, 'a> AtRate<'b, 'a> {
 
     fn add_quantities(&self, draft: &mut Draft) {
         let rate = &self.rate;
-        let ladders = self.ladders.iter();
+        let sizes = self.sizes.iter();
         let force = self.fluctuating_force().unwrap_or(f64::NAN);
-        let fluctuations = ladders.filter_map(|one| Some((one.waves, one.fluctuation_at(force)?)));
+        let fluctuations = sizes.filter_map(|one| Some((one.waves, one.fluctuation_at(force)?)));
         let of_size = exponent(fluctuations);
         draft.quantity("exponent of fluctuation", values!(rate), of_size);
         let loops = self.loops.iter();
         let widths = loops.filter_map(|one| Some((one.periods, one.width()?)));
         draft.quantity("exponent of loop", values!(rate), exponent(widths));
-        for one in &self.ladders {
+        for one in &self.sizes {
             let height = one.rise().map(|rise| rise.height);
             draft.quantity("rise", values!(rate, waves = one.waves), height);
         }
@@ -249,13 +249,17 @@ impl<'b, 'a> AtRate<'b, 'a> {
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = |study: &str| -> Result<_> { Ok(evidence.study(study)?.rows()) };
-    let ladders = Ladder::all_of(rows("small-speed-size")?);
-    let loops = Loop::all_of(rows("sweep-up")?, rows("sweep-down")?);
-    let rates = AtRate::all_of(&ladders, &loops);
-    let of_ladders = ladders.iter().map(|one| behind(&one.rows, Row::force));
+    let sizes = Size::all_of(rows("small-speed-size")?);
+    let sweeps = [rows("sweep-up")?, rows("sweep-down")?];
+    let sweep = sweeps.iter().flatten().next();
+    let passed = sweep.map_or(HALF, |row| row.number("transition_threshold"));
+    let [up, down] = sweeps;
+    let loops = Loop::all_of(up, down);
+    let rates = AtRate::all_of(&sizes, &loops);
+    let of_sizes = sizes.iter().map(|one| behind(&one.rows, Row::force));
     let statistics = Statistics {
         strain_rates: rates.len(),
-        ..Statistics::weakest(of_ladders)
+        ..Statistics::weakest(of_sizes)
     };
     if rates.is_empty() {
         return Ok(PROSE.nothing(statistics, &Q8_NEEDED));
@@ -267,16 +271,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for at in &rates {
         at.add_quantities(&mut draft);
     }
-    if !ladders.is_empty() {
+    if !sizes.is_empty() {
         let of_rate = |at: &AtRate<'_, '_>| {
             let force = at.fluctuating_force();
-            at.ladders
+            at.sizes
                 .iter()
                 .map(move |one| one.row(force))
                 .collect::<Vec<_>>()
         };
-        draft.table("ladders", &[], rates.iter().flat_map(of_rate));
-        for one in &ladders {
+        draft.table("sizes", &[], rates.iter().flat_map(of_rate));
+        for one in &sizes {
             let (forces, waves) = (one.drifting(), one.waves);
             if !forces.is_empty() {
                 let (rate, forces) = (number(1e3 * one.rate, 2), forces.join(", "));
@@ -287,13 +291,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if !loops.is_empty() {
         draft.table("loops", &[], loops.iter().map(Loop::row));
     }
-    draft.finding.paragraphs = PROSE.paragraphs("method", values!(passed = PASSED));
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(passed));
     let panels = figures::panels(&rates);
     if !panels.is_empty() {
         let chart = grid(rates.len(), panels)
             .panel_height(36.0)
             .legend(LegendPlace::Below);
-        draft.chart("small-speed", values!(passed = PASSED), chart)?;
+        draft.chart("small-speed", values!(passed), chart)?;
     }
     Ok(draft.concluded(verdict, summary, statistics, &Q8_NEEDED))
 }

@@ -12,7 +12,7 @@ const STUDIES: &[&str] = &["elastic-yielding", "elastic-branches"];
 pub(super) const CLAIM: Claim = Claim::new("S2", PROSE, STUDIES, examine);
 
 /// The runs from jammed at one force.
-struct Rung<'a> {
+struct AtForce<'a> {
     strain_rate: f64,
     force: f64,
     rows: Vec<Row<'a>>,
@@ -21,7 +21,7 @@ struct Rung<'a> {
     times: Vec<f64>,
 }
 
-impl<'a> Rung<'a> {
+impl<'a> AtForce<'a> {
     /// Of the runs from jammed, by strain rate and force.
     fn all_of(rows: &[Row<'a>]) -> Vec<Self> {
         let jammed = |row: &&Row<'_>| row.start() == Start::Jammed && row.force().is_finite();
@@ -93,43 +93,43 @@ impl<'a> Rung<'a> {
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let study = evidence.study("elastic-yielding")?;
     let (rows, branches) = (study.rows(), evidence.study("elastic-branches")?.rows());
-    let ladder = Rung::all_of(&rows);
-    if ladder.is_empty() {
+    let jams = AtForce::all_of(&rows);
+    if jams.is_empty() {
         return Ok(nothing(&PROSE));
     }
-    let gives_way = ladder.iter().rfind(|rung| rung.most_yield());
-    let lasts = ladder.iter().find(|rung| rung.times.is_empty());
+    let gives_way = jams.iter().rfind(|one| one.most_yield());
+    let lasts = jams.iter().find(|one| one.times.is_empty());
     let verdict = match (gives_way, lasts) {
         (Some(gives_way), Some(lasts)) if gives_way.force < lasts.force => Verdict::Reproduced,
-        (None, Some(_)) if ladder.iter().all(|rung| rung.times.is_empty()) => Verdict::Differs,
+        (None, Some(_)) if jams.iter().all(|one| one.times.is_empty()) => Verdict::Differs,
         _ => Verdict::Open,
     };
     let periods = longest(&rows);
-    let yielding = gives_way.map_or("at no force".to_owned(), |rung| {
-        format!("up to *f*^{{P}} = {} *Yd*^{{2}}", rung.force)
+    let yielding = gives_way.map_or("at no force".to_owned(), |one| {
+        format!("up to *f*^{{P}} = {} *Yd*^{{2}}", one.force)
     });
-    let lasting = lasts.map_or("some do at every force".to_owned(), |rung| {
-        format!("from {} on none does", rung.force)
+    let lasting = lasts.map_or("some do at every force".to_owned(), |one| {
+        format!("from {} on none does", one.force)
     });
     let lines = ForceLine::all_of(&branches);
     let summary = PROSE.text("summary", values!(periods, yielding, lasting));
     let mut draft = draft(PROSE);
-    for rung in &ladder {
-        let (force, runs) = (rung.force, rung.rows.len());
-        let censored = runs - rung.times.len();
-        draft.quantity("time", values!(force, runs, censored), rung.mean());
+    for one in &jams {
+        let (force, runs) = (one.force, one.rows.len());
+        let censored = runs - one.times.len();
+        draft.quantity("time", values!(force, runs, censored), one.mean());
     }
-    draft.table("times", &[], ladder.iter().map(Rung::cells));
-    let all = Rung::all_of(&branches);
+    draft.table("times", &[], jams.iter().map(AtForce::cells));
+    let all = AtForce::all_of(&branches);
     if !all.is_empty() {
-        let cells = all.iter().map(Rung::cells);
+        let cells = all.iter().map(AtForce::cells);
         draft.table("times at all strain rates", &[], cells);
     }
     draft.paragraph("method", values!(threshold = GIVEN_WAY));
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
-    let (chart, courses) = match courses(study, &ladder)? {
-        none if none.is_empty() => (ChartFigure::new(times(&ladder)), String::new()),
-        courses => (figure(courses, &ladder), PROSE.text("courses", &[])),
+    let (chart, courses) = match courses(study, &jams)? {
+        none if none.is_empty() => (ChartFigure::new(times(&jams)), String::new()),
+        courses => (figure(courses, &jams), PROSE.text("courses", &[])),
     };
     draft.chart("yielding", values!(courses, threshold = GIVEN_WAY), chart)?;
     let statistics = together(judged(&lines));
@@ -137,48 +137,46 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 }
 
 /// J(t) of one run a force, and the time until the jam gives way against the force.
-fn figure(courses: Vec<Curve>, ladder: &[Rung<'_>]) -> ChartFigure {
+fn figure(courses: Vec<Curve>, jams: &[AtForce<'_>]) -> ChartFigure {
     let in_time = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio))
         .y_range(..=1.05)
         .title("from jammed, one run a force")
         .with_all(courses);
-    let first = ladder[0].force;
-    let forces = ladder.iter().map(|rung| rung.force);
+    let first = jams[0].force;
+    let forces = jams.iter().map(|one| one.force);
     let axis = label(Axis::ForceAmplitude);
     let scale = colours(&axis, forces, (first, 1.01 * first));
-    grid(2, [in_time, times(ladder)]).colour_scale(scale)
+    grid(2, [in_time, times(jams)]).colour_scale(scale)
 }
 
 /// The flow in time of the first replicate at each force whose time series is at hand.
-fn courses(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<Vec<Curve>> {
+fn courses(study: &StudyResults, jams: &[AtForce<'_>]) -> Result<Vec<Curve>> {
     let mut curves = Vec::new();
-    for rung in ladder {
-        if let Some(row) = rung.rows.iter().find(|row| row.replicate() == 0) {
+    for one in jams {
+        if let Some(row) = one.rows.iter().find(|row| row.replicate() == 0) {
             let averages = study.period_averages(row)?;
             let known = averages.filter(|averages| !averages.is_empty());
-            curves.extend(known.map(|averages| course(rung.force, &averages)));
+            curves.extend(known.map(|averages| course(one.force, &averages)));
         }
     }
     Ok(curves)
 }
 
 /// The time until the jam gives way against the force, of the runs and their mean.
-fn times(ladder: &[Rung<'_>]) -> ChartPanel {
-    let single = ladder.iter().flat_map(|rung| {
-        let times = rung.times.iter();
-        times.map(|time| (rung.force, time * rung.strain_rate))
+fn times(jams: &[AtForce<'_>]) -> ChartPanel {
+    let single = jams.iter().flat_map(|one| {
+        let times = one.times.iter();
+        times.map(|time| (one.force, time * one.strain_rate))
     });
     let (force, time): (Vec<f64>, Vec<f64>) = single.unzip();
     let runs = Points::new("runs", &force, &time).series(0).open();
     let single = (!force.is_empty()).then(|| runs.tint(Tint::Grey));
-    let mean = |rung: &Rung<'_>| rung.mean().filter(|_| rung.most_yield());
-    let means = ladder
+    let mean = |one: &AtForce<'_>| one.mean().filter(|_| one.most_yield());
+    let means = jams.iter().filter_map(|one| Some((one.force, mean(one)?)));
+    let (force, watched): (Vec<f64>, Vec<f64>) = jams
         .iter()
-        .filter_map(|rung| Some((rung.force, mean(rung)?)));
-    let (force, watched): (Vec<f64>, Vec<f64>) = ladder
-        .iter()
-        .filter(|rung| mean(rung).is_none())
-        .map(|rung| (rung.force, rung.watched()))
+        .filter(|one| mean(one).is_none())
+        .map(|one| (one.force, one.watched()))
         .unzip();
     let limits = (!force.is_empty()).then(|| {
         Points::new("", &force, &watched)

@@ -1,13 +1,13 @@
 //! The figure of Q8: flow and fluctuation in tubes of several lengths, and the loops of sweeps.
 
-use super::{AtRate, Ladder, Loop};
+use super::{AtRate, Loop, Size};
 use crate::claims::elastic::label;
 use crate::claims::prelude::*;
 
 /// Flow and fluctuation against the force, a column a strain rate, and below the loops.
 pub(super) fn panels(rates: &[AtRate<'_, '_>]) -> Vec<ChartPanel> {
     let mut panels = Vec::new();
-    if rates.iter().any(|at| !at.ladders.is_empty()) {
+    if rates.iter().any(|at| !at.sizes.is_empty()) {
         panels.extend(rates.iter().map(flow));
         panels.extend(rates.iter().map(fluctuation));
     }
@@ -32,8 +32,8 @@ fn flow(at: &AtRate<'_, '_>) -> ChartPanel {
 
 fn fluctuation(at: &AtRate<'_, '_>) -> ChartPanel {
     let panel = against_force("fluctuation, (*L*/*λ*) *χ_J*").y_scale(Scale::Logarithmic);
-    let fluctuation = |ladder: &Ladder<'_>, point: &Point<'_>| {
-        ladder.fluctuation(point).filter(|mean| mean.value > 0.0)
+    let fluctuation = |size: &Size<'_>, point: &Point<'_>| {
+        size.fluctuation(point).filter(|mean| mean.value > 0.0)
     };
     with_series(panel, by_length(at, fluctuation))
 }
@@ -48,19 +48,19 @@ const ASIDE: f64 = 0.05;
 /// A series for each length, its points a little aside of those of the others.
 fn by_length(
     at: &AtRate<'_, '_>,
-    value: impl Fn(&Ladder<'_>, &Point<'_>) -> Option<Uncertain>,
+    value: impl Fn(&Size<'_>, &Point<'_>) -> Option<Uncertain>,
 ) -> Vec<Points> {
-    let series = |(place, ladder): (usize, &&Ladder<'_>)| {
+    let series = |(place, size): (usize, &&Size<'_>)| {
         let aside = ASIDE * (place as f64 - 1.0);
         let at = |point: &Point<'_>| 1e3 * point.control + aside;
-        let known = ladder.branch.points.iter();
-        let known = known.filter_map(|point| Some((at(point), value(ladder, point)?)));
-        let points = joined(&format!("{} waves", ladder.waves), known)?;
+        let known = size.branch.points.iter();
+        let known = known.filter_map(|point| Some((at(point), value(size, point)?)));
+        let points = joined(&format!("{} waves", size.waves), known)?;
         // Curves that fall on one another are told apart by open marks.
         let is_open = place % 2 == 1;
         Some(if is_open { points.open() } else { points })
     };
-    numbered(at.ladders.iter().enumerate().map(series)).collect()
+    numbered(at.sizes.iter().enumerate().map(series)).collect()
 }
 
 fn sweeps(at: &AtRate<'_, '_>) -> ChartPanel {
