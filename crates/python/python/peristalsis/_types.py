@@ -677,7 +677,7 @@ class Summary(_Rare):
     wall_tangential_force_error: float
     """its standard error [m d/t^2]"""
     narrow_normal_force: float
-    """part of wall_normal_force where the tube is narrower than on its mean [m d/t^2]"""
+    """part of wall_normal_force where the tube is narrower than its mean [m d/t^2]"""
     narrow_normal_force_error: float
     """its standard error [m d/t^2]"""
     narrow_tangential_force: float
@@ -762,10 +762,10 @@ class Summary(_Rare):
     axial_dispersion_error: float
     """its standard error [d^2/t]"""
     late_periods: float
-    """periods of samples that late means are over: of drive.strain_rate, or of observe.samples_per_period where the
-    wave stands"""
+    """length of the late part, in periods of drive.strain_rate; with a static wave in groups of
+    observe.samples_per_period samples"""
     back_flow: float
-    """late mean of -J where J < 0, each J the mean over the interval of a sample: what flows back in a stroke
+    """late mean of -J where J < 0, each J the mean over the interval of a sample: the rate of flow against the wave
     [1/t]"""
     back_flow_error: float
     """its standard error [1/t]"""
