@@ -46,7 +46,7 @@ fn a_finished_run_is_drawn_from_every_side() {
         );
     }
     let svg = String::from_utf8(bytes(&place, "results/tube-side.svg")).unwrap();
-    assert!(svg.contains("contacts of") && svg.contains("data:image/png;base64,"));
+    assert!(svg.contains("aria-label=\"contacts") && svg.contains("data:image/png;base64,"));
     for (name, content) in before {
         if content.is_some() {
             assert_eq!(place.inventory()[&name], content, "{}", name.display());

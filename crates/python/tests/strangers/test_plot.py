@@ -87,7 +87,7 @@ def test_symbols_are_italic(run: Simulation) -> None:
     """PYTHON, low."""
     assert plot.flow(run).get_xlabel() == "time, $t/T$"
     assert plot.profile(run, "axial_velocity").get_ylabel() == "axial velocity, $v_z/c$"
-    assert plot.profile(run, "granular_temperature").get_ylabel().endswith(r"$T_{\mathrm{g}}/(m\,d^2/t^2)$")
+    assert plot.profile(run, "granular_temperature").get_ylabel().endswith(r"$T_{\mathrm{g}}/(m\,c^2)$")
 
 
 def test_the_newtonian_fluid_stands_once_in_a_legend(run: Simulation) -> None:
