@@ -1,6 +1,7 @@
 //! What the layers of a panel mean, as its legend says it.
 
-use super::layer::{ChartLayer, Kind, Sample};
+use super::key::Sample;
+use super::layer::{ChartLayer, Kind};
 use super::look::marker;
 use super::paint::{BAND_OPACITY, BAR_OPACITY, Painter, RADII, WINDOW_OPACITY, arrow, join_stroke};
 use crate::geometry::Point;

@@ -1,5 +1,6 @@
 //! What a panel of a chart shows, one layer upon the other.
 
+use super::key::Key;
 use super::look::{Look, Tint};
 use crate::drawing::Pattern;
 
@@ -105,24 +106,6 @@ pub struct Window {
     pub(super) from: f64,
     pub(super) to: f64,
     pub(super) look: Look,
-}
-
-/// An entry of the legend for what several layers have in common, such as open markers.
-#[derive(Clone, Debug, Default, PartialEq)]
-#[must_use]
-pub struct Key {
-    pub(super) name: String,
-    pub(super) look: Look,
-    pub(super) sample: Sample,
-}
-
-/// What a key shows.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Sample {
-    #[default]
-    Filled,
-    Open,
-    Area,
 }
 
 /// A line of text in a corner of the panel.
@@ -369,34 +352,6 @@ impl Window {
             from,
             to,
             look: Look::of(Tint::Grey),
-        }
-    }
-}
-
-impl Key {
-    /// A filled marker; the name is in markup.
-    pub fn filled(name: &str) -> Self {
-        Self {
-            name: name.to_owned(),
-            look: Look::of(Tint::Black),
-            sample: Sample::Filled,
-        }
-    }
-
-    /// A marker with a white inside.
-    pub fn open(name: &str) -> Self {
-        Self {
-            sample: Sample::Open,
-            ..Self::filled(name)
-        }
-    }
-
-    /// A shaded area.
-    pub fn area(name: &str) -> Self {
-        Self {
-            sample: Sample::Area,
-            look: Look::of(Tint::Grey),
-            ..Self::filled(name)
         }
     }
 }

@@ -30,6 +30,7 @@ mod check;
 mod curve;
 mod entries;
 mod frame;
+mod key;
 mod layer;
 mod layout;
 mod look;
@@ -40,10 +41,9 @@ mod placement;
 mod tests;
 mod texts;
 
+pub use key::Key;
 pub(crate) use layer::Spheres;
-pub use layer::{
-    Band, Bars, ChartLayer, Corner, Field, Key, Line, Note, Points, Reference, Window,
-};
+pub use layer::{Band, Bars, ChartLayer, Corner, Field, Line, Note, Points, Reference, Window};
 pub use look::Tint;
 pub use panel::ChartPanel;
 
