@@ -127,11 +127,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.paragraph("method", values!(threshold = GIVEN_WAY));
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
-    let (chart, courses) = match courses(study, &jams)? {
-        none if none.is_empty() => (ChartFigure::new(times(&jams)), String::new()),
-        courses => (figure(courses, &jams), PROSE.text("courses", &[])),
+    let (chart, shown) = match courses(study, &jams)? {
+        none if none.is_empty() => (
+            ChartFigure::new(times(&jams)),
+            PROSE.text("times alone", values!(threshold = GIVEN_WAY)),
+        ),
+        courses => (
+            figure(courses, &jams),
+            PROSE.text("courses", values!(threshold = GIVEN_WAY)),
+        ),
     };
-    draft.chart("yielding", values!(courses, threshold = GIVEN_WAY), chart)?;
+    draft.chart("yielding", values!(shown), chart)?;
     let statistics = together(judged(&lines));
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
