@@ -118,6 +118,9 @@ impl Layout {
     }
 }
 
+/// Range of an axis along which nothing is drawn, linear or logarithmic.
+const NO_DATA: (f64, f64) = (0.1, 1.0);
+
 /// Height of the frames in points, unless their scales decide it.
 fn usual_height(figure: &ChartFigure) -> f64 {
     if let Some(height) = figure.panel_height {
@@ -257,7 +260,9 @@ fn shared<'a>(
         wish.least = least.into_iter().flatten().reduce(f64::min);
         wish.largest = largest.into_iter().flatten().reduce(f64::max);
     }
-    Ok((wish, data))
+    // Where nothing is drawn any range serves.
+    let is_empty = data.0 > data.1;
+    Ok((wish, if is_empty { NO_DATA } else { data }))
 }
 
 fn x_ticks(panel: &ChartPanel, axis: &Axis, width: f64) -> Vec<Tick> {

@@ -165,6 +165,18 @@ fn panels_in_a_column_have_one_range_where_they_are_alike() {
 }
 
 #[test]
+fn a_panel_without_data_is_drawn_beside_others() {
+    let note = Note::corner(Corner::TopLeft, "nothing yet");
+    let empty = || ChartPanel::new("x", "y").with(note.clone());
+    let full = ChartPanel::new("x", "y").with(Points::new("", &[1.0, 2.0], &[3.0, 4.0]));
+    let logarithmic = empty().y_scale(Scale::Logarithmic);
+    let chart = ChartFigure::grid(2, [empty(), full, logarithmic]);
+    assert_eq!(marks(&chart.draw().expect("drawable")).len(), 1);
+    let alike = ChartFigure::grid(1, [empty(), empty()]).alike_y();
+    assert!(alike.draw().is_ok());
+}
+
+#[test]
 fn an_axis_of_names_has_them_at_whole_numbers() {
     let names = ["one", "other"].map(str::to_owned);
     let panel = ChartPanel::new("x", "y").y_range(0.0..=1.0).x_names(&names);
