@@ -30,6 +30,12 @@ impl Checked {
         height: f64,
         coloured: bool,
     ) -> Result<Self, FigureError> {
+        if panel.layers.is_empty() {
+            return Err(FigureError::EmptySeries {
+                series: "panel".to_owned(),
+                length: 0,
+            });
+        }
         let values = |axis, scale| Values {
             axis,
             scale,
