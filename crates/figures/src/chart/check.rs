@@ -30,12 +30,6 @@ impl Checked {
         height: f64,
         coloured: bool,
     ) -> Result<Self, FigureError> {
-        if panel.layers.is_empty() {
-            return Err(FigureError::EmptySeries {
-                series: "panel".to_owned(),
-                length: 0,
-            });
-        }
         let values = |axis, scale| Values {
             axis,
             scale,
