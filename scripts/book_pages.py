@@ -18,6 +18,7 @@ PAGES = {
     "VALIDATION.md": "results/claims.md",
     "docs/verification.md": "results/verification.md",
     "BENCHMARKS.md": "results/benchmarks.md",
+    "benchmarks/HISTORY.md": "results/history.md",
     "ARCHITECTURE.md": "developers/architecture.md",
     "CHANGELOG.md": "developers/changelog.md",
     "CONTRIBUTING.md": "developers/contributing.md",

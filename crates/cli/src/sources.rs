@@ -87,14 +87,16 @@ pub(crate) fn study(path: &Path) -> Result<Specification, Failure> {
         let tables = ["[drive]", "[tube]", "[grains]", "[run]"];
         !is_a_study(text) && text.lines().any(|line| tables.contains(&line.trim()))
     };
-    if std::fs::read_to_string(path).is_ok_and(|text| of_one_run(&text)) {
+    Specification::read(path).map_err(|error| {
+        if !std::fs::read_to_string(path).is_ok_and(|text| of_one_run(&text)) {
+            return error.into();
+        }
         let name = path.display();
-        return Err(Failure::usage(
+        Failure::usage(
             format!("{name} is the configuration of one run, not a study"),
             format!("use: peristalsis run {name}"),
-        ));
-    }
-    Ok(Specification::read(path)?)
+        )
+    })
 }
 
 /// Whether a path is `-`, which stands for standard input.

@@ -434,7 +434,8 @@ impl Simulation {
         }
     }
 
-    /// The order of the grains in the sorted kernel; `None` with another kernel, or if a grain has left all bounds: the run diverged.
+    /// The order of the grains in the sorted kernel; `None` with another kernel, or if a grain has left all bounds: the run
+    /// diverged.
     fn sorting(&self) -> Option<Sorting> {
         let sorting = self.sorted.as_ref()?.sorting();
         let (bodies, wall) = (self.bodies(), self.wall());

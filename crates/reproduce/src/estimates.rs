@@ -84,7 +84,8 @@ fn stretched(value: f64, error: f64, ratio: f64, degrees_of_freedom: usize) -> U
     }
 }
 
-/// The power of the strain rate with which a number goes, its error stretched to the scatter; `None` with too few strain rates.
+/// The power of the strain rate with which a number goes, its error stretched to the scatter; `None` with too few strain
+/// rates.
 pub(crate) fn power_of_rate(numbers: &[(f64, Uncertain)]) -> Option<Uncertain> {
     line_of_rate(numbers).as_ref().map(slope)
 }

@@ -157,7 +157,8 @@ pub struct Finding {
     pub statistics: Statistics,
     /// The runs that a verdict takes.
     pub needed: Statistics,
-    /// The parameter that is varied at each strain rate: "width", "force", "friction", "bottleneck", "back pressure" or "outlet".
+    /// The parameter that is varied at each strain rate: "width", "force", "friction", "bottleneck", "back pressure" or
+    /// "outlet".
     pub varied: &'static str,
     /// Numbers, the most important first.
     pub quantities: Vec<Quantity>,

@@ -46,7 +46,11 @@ fn a_finished_run_is_drawn_from_every_side() {
         );
     }
     let svg = String::from_utf8(bytes(&place, "results/tube-side.svg")).unwrap();
-    assert!(svg.contains("aria-label=\"contacts") && svg.contains("data:image/png;base64,"));
+    // A long label has several lines, each with its words.
+    let words = svg.split("aria-label=\"").skip(1);
+    let words: Vec<&str> = words.filter_map(|it| it.split('"').next()).collect();
+    assert!(words.join(" ").contains("contacts of a grain"), "{words:?}");
+    assert!(svg.contains("data:image/png;base64,"));
     for (name, content) in before {
         if content.is_some() {
             assert_eq!(place.inventory()[&name], content, "{}", name.display());

@@ -27,8 +27,8 @@ impl TangentialLaw for Frictionless {
 
 /// How the tangential displacement u changes while a contact slides.
 ///
-/// `Spring` cuts the spring to what sliding friction can hold. `Balance` lets spring and dashpot together balance the sliding force.
-/// `Literal` is one way to read the source's words.
+/// `Spring` cuts the spring to what sliding friction can hold. `Balance` lets spring and dashpot together balance the
+/// sliding force. `Literal` is one way to read the source's words.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Sliding {

@@ -33,7 +33,7 @@ impl Arrangement {
         Self::Smooth,
     ];
 
-    /// Whether a ring has so many spheres, and a wavelength so many rings, or as many spheres as that.
+    /// Whether the wall is made of spheres: as many as the rings of a lattice have.
     pub fn has_spheres(self) -> bool {
         self != Self::Smooth
     }

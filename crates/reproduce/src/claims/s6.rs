@@ -233,8 +233,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         Some(false) => Verdict::Differs,
         None => Verdict::Open,
     };
-    let (count, least) = (places.count(), LEAST_RATES);
-    let summary = PROSE.text("summary", values!(count, least));
+    let count = places.count();
+    let summary = PROSE.text("summary", values!(count));
     let mut draft = draft(PROSE);
     for one in &matched {
         let (rate, bottleneck) = (one.strain_rate, rounded(one.bottleneck));
