@@ -274,6 +274,22 @@ fn to_value(node: &Node) -> toml::Value {
     }
 }
 
+/// Tables are merged key by key, all other values replaced.
+pub(crate) fn merge(base: &mut Table, layer: Table) {
+    for (key, mut entry) in layer {
+        if let Node::Table(above) = &mut entry.item.node
+            && let Some(below) = base.get_mut(&key)
+            && let Node::Table(table) = &mut below.item.node
+        {
+            merge(table, std::mem::take(above));
+            below.key = entry.key;
+            below.item.origin = entry.item.origin;
+            continue;
+        }
+        base.insert(key, entry);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

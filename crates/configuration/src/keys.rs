@@ -4,13 +4,16 @@
 //! enforces it. m, d and t are the units of mass, length and time; "1" marks a pure number. The default "null" says that
 //! what holds for a missing key follows from other keys.
 
-use peristalsis_physics::contact::{Cohesion, CundallStrack, Normal, RollingResistance};
+use std::sync::LazyLock;
+
+use peristalsis_physics::contact::{Cohesion, CundallStrack, Normal, NormalLaw, RollingResistance};
 use peristalsis_physics::ends::Inlet;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::configuration::{Drive, Initial, Observe, Run, Tube, Wall};
 use crate::grains::{Body, Grains};
+use crate::schema;
 
 /// Keys that give the number of grains.
 pub(crate) const NUMBERS: &[&str] = &[
@@ -31,10 +34,13 @@ pub(crate) const ALTERNATIVES: [&[&str]; 4] =
     [NUMBERS, &["drive.width", "drive.amplitude"], RATES, LENGTHS];
 
 /// Lists of keys; a configuration gives at most one key of each list: the damping of a law, or the restitution instead.
-pub(crate) const DAMPINGS: [&[&str]; 2] = [
-    &["contact.normal_damping", "contact.restitution"],
-    &["contact.dissipation_time", "contact.restitution"],
-];
+pub(crate) static DAMPINGS: LazyLock<Vec<[&str; 2]>> = LazyLock::new(|| {
+    schema::laws()
+        .map(|law| [law.damping().0, RESTITUTION])
+        .collect()
+});
+/// Restitution of an impact, instead of a damping.
+pub(crate) const RESTITUTION: &str = "contact.restitution";
 
 /// Keys of the lattice of a wall of spheres; a smooth wall has none of them.
 pub(crate) const RINGS: [&str; 2] = ["tube.spheres_per_ring", "tube.rings_per_wave"];
@@ -76,7 +82,7 @@ pub(crate) const OPEN: [&str; 6] = [
 pub(crate) fn exclusive_groups() -> impl Iterator<Item = &'static [&'static str]> {
     ALTERNATIVES
         .into_iter()
-        .chain(DAMPINGS)
+        .chain(DAMPINGS.iter().map(<[_; 2]>::as_slice))
         .chain([SPHERES, POINTS, GRAVITIES, FEEDS])
         .chain(COHESIONS)
         .chain(SIZES)

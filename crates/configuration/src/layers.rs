@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
-use peristalsis_physics::contact::{Elasticity, Normal, NormalLaw};
+use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::wall::{Arrangement, ElasticNetwork, SegmentDrive};
 
-use crate::document::{self, Entry, Node, Table};
+use crate::document::{self, Entry, Table};
 use crate::error::{Problem, ProblemKind, Problems};
 use crate::keys::{DAMPINGS, OPEN, RINGS, exclusive_groups};
 use crate::materials::{self, MATERIAL};
@@ -136,7 +136,11 @@ fn switch_of(choice: &Choice) -> Switch {
             }
         }
         match switch.key.as_str() {
-            "contact.law" => switch.owns(&value.name, unit_of_elasticity(&value.name)),
+            "contact.law" => {
+                if let Some(law) = schema::law_of(&value.name) {
+                    switch.owns(&value.name, units::elasticity_key(law.elasticity()));
+                }
+            }
             "drive.control" if value.name == "stress" => {
                 let network = schema::of::<ElasticNetwork>();
                 for (name, _) in network["properties"].as_object().into_iter().flatten() {
@@ -147,19 +151,6 @@ fn switch_of(choice: &Choice) -> Switch {
         }
     }
     switch
-}
-
-/// What scales a contact law of a name, with its default; `None` for a name that no law has.
-pub(crate) fn elasticity_of(law: &str) -> Option<Elasticity> {
-    let law = toml::Table::from_iter([("law".to_owned(), law.into())]);
-    let law: Normal = law.try_into().ok()?;
-    Some(law.elasticity())
-}
-
-/// The key that gives the elasticity of a contact law in SI.
-fn unit_of_elasticity(law: &str) -> String {
-    let elasticity = elasticity_of(law).expect("every parameter of a law has a default");
-    units::key(elasticity).to_owned()
 }
 
 /// Whether the wall of a table is smooth, so that it has no rings.
@@ -198,7 +189,7 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
     // A damping takes the place of a restitution with its speed.
     if DAMPINGS
         .iter()
-        .any(|group| document::entry(&layer, group[0]).is_some())
+        .any(|[damping, _]| document::entry(&layer, damping).is_some())
     {
         document::remove(base, "contact.restitution_speed");
     }
@@ -209,7 +200,7 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
     if document::entry(&layer, "drive.schedule").is_some() {
         document::remove(base, "drive.schedule");
     }
-    merge(base, layer);
+    document::merge(base, layer);
 }
 
 /// The problem of several keys of a group of alternatives.
@@ -244,22 +235,6 @@ fn drop_meaningless(base: &mut Table, layer: &Table, switch: &Switch) {
     }
 }
 
-/// Tables are merged key by key, all other values replaced.
-pub(crate) fn merge(base: &mut Table, layer: Table) {
-    for (key, mut entry) in layer {
-        if let Node::Table(above) = &mut entry.item.node
-            && let Some(below) = base.get_mut(&key)
-            && let Node::Table(table) = &mut below.item.node
-        {
-            merge(table, std::mem::take(above));
-            below.key = entry.key;
-            below.item.origin = entry.item.origin;
-            continue;
-        }
-        base.insert(key, entry);
-    }
-}
-
 /// Parses a file with settings over it, a document of another kind that someone else checks and resolves.
 pub fn file_with_overrides(
     file: SourceFile<'_>,
@@ -268,7 +243,7 @@ pub fn file_with_overrides(
 ) -> Table {
     let mut table = document::parse_file(file, problems);
     for text in overrides {
-        merge(&mut table, document::parse_override(text, problems));
+        document::merge(&mut table, document::parse_override(text, problems));
     }
     table
 }
@@ -277,7 +252,7 @@ pub fn file_with_overrides(
 pub fn join(overrides: Vec<Table>) -> Table {
     let mut layer = Table::new();
     for table in overrides {
-        merge(&mut layer, table);
+        document::merge(&mut layer, table);
     }
     layer
 }

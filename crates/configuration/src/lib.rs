@@ -67,5 +67,5 @@ pub use reference::reference;
 pub use schedule::{Schedule, ScheduledParameter};
 pub use schema::{schema, schema_of, unit_of};
 pub use source::{Origin, SourceFile, Sources};
-pub use units::{HOUR, Units, grain_mass};
+pub use units::{HOUR, Units, elasticity_key, grain_mass};
 pub use waveform::WaveformName;

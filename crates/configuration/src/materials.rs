@@ -1,10 +1,10 @@
 //! Materials by name: what `units.material` stands for.
 
-use peristalsis_physics::contact::Elasticity;
+use peristalsis_physics::contact::{Elasticity, NormalLaw};
 
 use crate::document::{self, Item, Node, Table};
-use crate::keys::DAMPINGS;
-use crate::layers;
+use crate::keys::{DAMPINGS, RESTITUTION};
+use crate::schema;
 
 /// A material of which grains are made, as measured.
 ///
@@ -105,7 +105,7 @@ const FRICTIONS: [&str; 2] = ["contact.static_friction", "contact.kinetic_fricti
 
 /// Takes out of lower layers what a material stands for; a modulus stays, for grains are often computed softer than they are.
 pub(crate) fn replace(base: &mut Table) {
-    let dampings = DAMPINGS.into_iter().flatten().copied();
+    let dampings = DAMPINGS.iter().flatten().copied();
     let keys = ["units.density", POISSON_RATIO, "contact.restitution_speed"].into_iter();
     for key in keys.chain(FRICTIONS).chain(dampings) {
         document::remove(base, key);
@@ -124,7 +124,7 @@ pub(crate) fn fill(table: &mut Table) {
         return;
     };
     let law = document::text(table, "contact.law").unwrap_or_default();
-    let elasticity = layers::elasticity_of(law);
+    let elasticity = schema::law_of(law).map(|law| law.elasticity());
     let is_given =
         |table: &Table, keys: &[&str]| keys.iter().any(|key| document::entry(table, key).is_some());
     let mut values: Vec<(&str, f64)> = vec![("units.density", material.density)];
@@ -133,7 +133,7 @@ pub(crate) fn fill(table: &mut Table) {
         values.push((POISSON_RATIO, material.poisson_ratio));
     }
     if !is_given(table, &DAMPINGS.concat()) {
-        values.push((DAMPINGS[0][1], material.restitution));
+        values.push((RESTITUTION, material.restitution));
     }
     if !is_given(table, &FRICTIONS) {
         values.extend(FRICTIONS.map(|key| (key, material.friction)));
@@ -144,7 +144,7 @@ pub(crate) fn fill(table: &mut Table) {
                 origin: entry.item.origin.clone(),
                 node: Node::Float(value),
             };
-            layers::merge(table, document::setting(key, &entry.key, item));
+            document::merge(table, document::setting(key, &entry.key, item));
         }
     }
 }

@@ -65,6 +65,21 @@ pub(crate) static CHOICES: LazyLock<[Choice; 2]> = LazyLock::new(|| {
     ]
 });
 
+/// The normal law of a name with its defaults; `None` for a name that no law has.
+pub(crate) fn law_of(name: &str) -> Option<Normal> {
+    let law = toml::Table::from_iter([("law".to_owned(), name.into())]);
+    law.try_into().ok()
+}
+
+/// Every normal law with its defaults.
+pub(crate) fn laws() -> impl Iterator<Item = Normal> {
+    let [laws, _] = &*CHOICES;
+    let of = |value: &ChosenValue| law_of(&value.name);
+    laws.values
+        .iter()
+        .map(move |value| of(value).expect("every parameter of a law has a default"))
+}
+
 /// A choice from the schema of an enum with a tag.
 fn choice(table: &'static str, schema: &Value) -> Choice {
     let mut key = String::new();

@@ -32,7 +32,7 @@ pub struct Units {
 }
 
 /// The key that gives an elasticity in SI.
-pub(crate) fn key(elasticity: Elasticity) -> &'static str {
+pub fn elasticity_key(elasticity: Elasticity) -> &'static str {
     match elasticity {
         Elasticity::Stiffness(_) => "units.stiffness",
         Elasticity::YoungModulus(_) => "units.young_modulus",

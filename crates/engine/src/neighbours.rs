@@ -328,7 +328,7 @@ impl Drift {
     /// By how much one of these spheres and one of others may have come closer \[d\]; how fast they may, of velocities.
     pub(crate) fn approach(self, other: Self) -> f64 {
         let axial = (self.largest - other.least).max(other.largest - self.least);
-        axial.max(0.0).hypot(self.lateral + other.lateral)
+        libm::hypot(axial.max(0.0), self.lateral + other.lateral)
     }
 }
 

@@ -476,7 +476,7 @@ impl Simulation {
     fn is_outside(&self, sphere: usize) -> bool {
         let (place, wall) = (self.bodies.position[sphere], self.wall());
         let reach = 0.5 * (self.bodies.diameter[sphere] + wall.sphere_diameter());
-        let from_axis = place.x.hypot(place.y);
+        let from_axis = libm::hypot(place.x, place.y);
         sphere < self.bodies.grains
             && from_axis.is_finite()
             && from_axis > wall.usual_radius() + reach

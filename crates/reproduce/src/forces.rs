@@ -70,13 +70,13 @@ pub(crate) fn outside(escaped: f64, left_out: &[f64]) -> String {
     format!("{escaped} (left out: {forces})")
 }
 
-/// Number of runs that count for a verdict.
-pub(crate) fn counted(rows: &[Row<'_>]) -> usize {
+/// The runs that count for a verdict: means over so many stationary periods.
+pub(crate) fn counting<'a>(rows: &[Row<'a>]) -> Vec<Row<'a>> {
     // Means over a whole number of samples may miss whole periods by one of them.
     let counts = |row: &&Row<'_>| {
         row.is_stationary() && row.number("late_periods") >= STATIONARY_PERIODS - 0.5
     };
-    rows.iter().filter(counts).count()
+    rows.iter().filter(counts).copied().collect()
 }
 
 /// Whether the flow at a point is below a bound by many of its errors.
@@ -202,7 +202,7 @@ fn behind(rows: &[Row<'_>]) -> Statistics {
         let mut numbers: Vec<usize> = groups
             .iter()
             .filter(|group| group.0.0 == start)
-            .map(|(_, rows)| counted(rows))
+            .map(|(_, rows)| counting(rows).len())
             .filter(|number| *number > 0)
             .collect();
         numbers.sort_unstable_by(|one, other| other.cmp(one));

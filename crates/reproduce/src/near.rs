@@ -4,7 +4,7 @@ use peristalsis_analysis::{
     InverseFit, Law, LawFit, Uncertain, fit_inverse_line, fit_inverse_parabola, fit_law,
 };
 
-use crate::critical::Line;
+use crate::critical::{Divergence, Line};
 use crate::estimates::columns;
 use crate::thresholds::{NEAR, SEEN, STRAIGHT, WINDOW, WORSE};
 
@@ -19,8 +19,8 @@ pub(crate) struct Near {
     pub(crate) curved: Option<InverseFit>,
     /// tau = A d^−alpha over the same widths as `curved`.
     pub(crate) power: Option<LawFit>,
-    /// alpha of the fewest widths that a fit can use, by the likelihood of the runs.
-    pub(crate) exponent: Option<Uncertain>,
+    /// The power law of the fewest widths that a fit can use, by the likelihood of all runs there.
+    nearest: Option<Divergence>,
     /// Widths, chi_tau and its errors.
     variance: [Vec<f64>; 3],
 }
@@ -40,11 +40,13 @@ impl Near {
         let fits: Vec<_> = fits.filter(|(_, fit)| fit.mean.error > 0.0).collect();
         let times = columns(fits.iter().map(|(width, fit)| (*width, fit.mean)), 0.0);
         let [width, time, error] = &times;
-        // A fit whose w_c lies within the widths is left out.
         let last = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let is_beyond = |fit: &InverseFit| fit.critical_width.value > last;
+        let jams = line.ensembles.iter().filter(|one| one.observed > 0);
+        let last_jam = jams.map(|one| one.width).fold(last, f64::max);
+        // A law whose w_c lies within the widths at which runs jam, many or few, is left out.
+        let is_beyond = |critical: Uncertain| critical.value > last && !critical.is_below(last_jam);
         let curved = fit_inverse_parabola(width, time, error).ok();
-        let curved = curved.filter(is_beyond);
+        let curved = curved.filter(|fit| is_beyond(fit.critical_width));
         // The widths of the straight line: those near x = 1, at least the nearest four.
         let unit = line.strain_rate.powf(1.5);
         let critical = curved.map(|curved| curved.critical_width.value);
@@ -52,21 +54,34 @@ impl Near {
         let number = width.iter().filter(|width| is_near(width)).count();
         let first = width.len().saturating_sub(number.max(STRAIGHT));
         let variance = fits.iter().map(|(width, fit)| (*width, fit.variance));
+        let power = fit_law(Law::Power, width, time, error, None).ok();
         Some(Self {
             strain_rate: line.strain_rate,
             straight: fit_inverse_line(&width[first..], &time[first..], &error[first..]).ok(),
             curved,
-            power: fit_law(Law::Power, width, time, error, None).ok(),
-            exponent: line.nearest().map(|fit| fit.exponent),
+            power: power.filter(|fit| fit.critical_width.is_some_and(is_beyond)),
+            nearest: line.nearest(),
             variance: columns(variance.filter(|(_, one)| one.value > 0.0), 0.0),
         })
+    }
+
+    /// alpha of the fewest widths that a fit can use, by the likelihood of the runs.
+    pub(crate) fn exponent(&self) -> Option<Uncertain> {
+        self.nearest.map(|fit| fit.exponent)
+    }
+
+    /// (w_c − w)/epsdot^(3/2) of the widest tube whose transition times are fitted.
+    pub(crate) fn nearest_distance(&self) -> Option<f64> {
+        let [widths, ..] = &self.variance;
+        let last = widths.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        Some((self.critical_width()?.value - last) / self.strain_rate.powf(1.5))
     }
 
     /// Whether alpha = 1 next to w_c: where 1/tau = B d + C d² has a clear linear term and a free power, of as many parameters,
     /// fits no better. Without a clear linear term the local exponent decides.
     pub(crate) fn is_linear(&self, agrees: impl Fn(&Uncertain) -> Option<bool>) -> Option<bool> {
         let (Some(curved), Some(power)) = (self.judged(), &self.power) else {
-            return self.exponent.as_ref().and_then(agrees);
+            return self.exponent().as_ref().and_then(agrees);
         };
         Some(curved.chi_squared - power.chi_squared < WORSE)
     }
@@ -119,18 +134,25 @@ impl Near {
             .then(|| Uncertain::normal(value, value * relative))
     }
 
-    /// w_c of alpha = 1, or of the free power where 1/tau has no linear term.
-    fn linear_or_free(&self) -> Option<Uncertain> {
+    /// w_c of alpha = 1, of the free power, and by the likelihood of all runs, where each has one.
+    fn critical_widths(&self) -> [Option<Uncertain>; 3] {
         let linear = self.curved.map(|curved| curved.critical_width);
-        linear.or_else(|| self.power.and_then(|fit| fit.critical_width))
+        let power = self.power.and_then(|fit| fit.critical_width);
+        [linear, power, self.nearest.map(|fit| fit.critical_width)]
+    }
+
+    /// The first of them that there is.
+    fn linear_or_free(&self) -> Option<Uncertain> {
+        self.critical_widths().into_iter().flatten().next()
     }
 
     /// w_c with an error that knows of the law: midway between those of the free power and of alpha = 1, their distance
-    /// from it beside the larger error of both.
+    /// from it beside the larger error of both. Where neither law holds, that by the likelihood of all runs.
     pub(crate) fn critical_width(&self) -> Option<Uncertain> {
-        let power = self.power.and_then(|fit| fit.critical_width);
-        let linear = self.curved.map(|curved| curved.critical_width);
-        let (one, other) = (power.or(linear)?, linear.or(power)?);
+        let [linear, power, of_all] = self.critical_widths();
+        let (Some(one), Some(other)) = (power.or(linear), linear.or(power)) else {
+            return of_all;
+        };
         let half = 0.5 * (one.value - other.value);
         let error = one.error.max(other.error).hypot(half);
         Some(Uncertain::normal(other.value + half, error))
@@ -138,10 +160,10 @@ impl Near {
 }
 
 /// What one number of every strain rate is.
-pub(crate) fn at_rates<'a>(
+pub(crate) fn at_rates<'a, T>(
     all: impl IntoIterator<Item = &'a Near>,
-    number: impl Fn(&Near) -> Option<Uncertain>,
-) -> Vec<(f64, Uncertain)> {
+    number: impl Fn(&Near) -> Option<T>,
+) -> Vec<(f64, T)> {
     let all = all.into_iter();
     all.filter_map(|near| Some((near.strain_rate, number(near)?)))
         .collect()

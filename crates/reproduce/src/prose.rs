@@ -173,6 +173,12 @@ impl Prose {
         })
     }
 
+    /// The names of all figures that the text knows.
+    pub(crate) fn figures(&self) -> impl Iterator<Item = &'static str> {
+        let sections = self.markdown.split("\n## ").skip(1);
+        sections.filter_map(|section| section.lines().next()?.strip_prefix("figure: "))
+    }
+
     /// The number of a section `quantity: name`, of which the source gives none: its name, symbol, unit and method are written
     /// there.
     pub(crate) fn quantity(

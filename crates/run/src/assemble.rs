@@ -171,7 +171,10 @@ fn check_places(simulation: &Simulation) -> Result<(), RunError> {
     let refused = |reason: String| Err(RunError::Placement { reason });
     let (bodies, shape) = (simulation.bodies(), TubeShape::of(simulation));
     for (grain, position) in bodies.position[..bodies.grains].iter().enumerate() {
-        let (radius, from_axis) = (shape.radius(position.z), position.x.hypot(position.y));
+        let (radius, from_axis) = (
+            shape.radius(position.z),
+            libm::hypot(position.x, position.y),
+        );
         if from_axis > radius {
             return refused(format!(
                 "grain {grain} at {position} is outside the tube: it is {from_axis:.4} d from the axis, where the radius is \

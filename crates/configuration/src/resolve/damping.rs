@@ -1,14 +1,13 @@
 //! The damping of the contacts: as given, or from the restitution of an impact.
 
-use peristalsis_physics::contact::{ContactModel, Impact, Normal, NormalLaw};
+use peristalsis_physics::contact::{ContactModel, Impact, NormalLaw};
 
 use super::{Context, schema_of};
 use crate::configuration::Drive;
 use crate::error::ProblemKind;
 use crate::grains::Grains;
-use crate::keys::{DAMPINGS, Keys};
+use crate::keys::{Keys, RESTITUTION};
 
-const RESTITUTION: &str = "contact.restitution";
 const SPEED: &str = "contact.restitution_speed";
 
 /// Contacts with the damping of contact.restitution, where that is given.
@@ -33,7 +32,7 @@ pub(super) fn damped(
     let normal = contact
         .normal
         .with_restitution(restitution, Impact::of_twins(diameter, speed));
-    let (key, damping) = damping_of(normal);
+    let (key, damping) = normal.damping();
     if damping.is_nan() && speed == 0.0 {
         let message = format!("{RESTITUTION} holds at the speed of the wave, which stands still");
         let help = format!("give the speed of the impact that is meant as {SPEED}");
@@ -47,15 +46,4 @@ pub(super) fn damped(
         return context.refuse(ProblemKind::OutOfRange, &[RESTITUTION], message, help);
     }
     Some(ContactModel { normal, ..contact })
-}
-
-/// The key of a law's damping, with its value.
-fn damping_of(normal: Normal) -> (&'static str, f64) {
-    let law = toml::Table::try_from(normal).expect("a law consists of numbers and names");
-    let keys = DAMPINGS.into_iter().map(|group| group[0]);
-    let mut values = keys.filter_map(|key| {
-        let (_, name) = key.split_once('.')?;
-        Some((key, law.get(name)?.as_float()?))
-    });
-    values.next().expect("every law has a damping")
 }

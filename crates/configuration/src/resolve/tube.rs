@@ -8,7 +8,7 @@ use crate::document::{self, Item, Node, Table};
 use crate::error::ProblemKind;
 use crate::grains::Grains;
 use crate::keys::RINGS;
-use crate::{layers, limits};
+use crate::limits;
 
 /// Whether the lattice closes and its size is sane.
 pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Context<'_>) {
@@ -67,7 +67,7 @@ pub(super) fn without_rings(table: &mut Table) {
             origin: origin.clone(),
             node: Node::Integer(0),
         };
-        layers::merge(table, document::setting(key, &origin, item));
+        document::merge(table, document::setting(key, &origin, item));
     }
 }
 

@@ -37,7 +37,7 @@ pub(super) fn units(
     if *keys == UnitsKeys::default() {
         return Some(None);
     }
-    let elastic_key = units::key(of_contact);
+    let elastic_key = units::elasticity_key(of_contact);
     let needed = [NEEDED[0], NEEDED[1], elastic_key];
     let given = |key: &&str| context.given(key);
     let missing: Vec<&str> = needed.into_iter().filter(|key| !given(key)).collect();

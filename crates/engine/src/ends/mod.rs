@@ -226,7 +226,7 @@ impl Ends {
     /// Counts a grain that has left.
     fn count(&mut self, bodies: &Bodies, grain: usize, wall: &Wall, at_outlet: bool, time: f64) {
         let (place, mass) = (bodies.position[grain], bodies.mass[grain]);
-        let from_axis = place.x.hypot(place.y);
+        let from_axis = libm::hypot(place.x, place.y);
         let passages = &mut self.passages;
         if from_axis > wall.radius(place.z) + 0.5 * bodies.diameter[grain] {
             passages.leaked.add(mass);

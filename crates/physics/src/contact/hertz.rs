@@ -160,6 +160,10 @@ impl NormalLaw for ViscoelasticHertz {
         }
     }
 
+    fn damping(&self) -> (&'static str, f64) {
+        ("contact.dissipation_time", self.dissipation_time)
+    }
+
     fn undamped(&self) -> Self {
         Self {
             dissipation_time: 0.0,

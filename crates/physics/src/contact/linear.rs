@@ -84,6 +84,10 @@ impl NormalLaw for LinearSpringDashpot {
         }
     }
 
+    fn damping(&self) -> (&'static str, f64) {
+        ("contact.normal_damping", self.normal_damping)
+    }
+
     fn undamped(&self) -> Self {
         Self {
             normal_damping: 0.0,

@@ -142,6 +142,9 @@ pub trait NormalLaw: Copy + Sync {
     /// Force at overlap xi > 0, normal velocity v_n (positive when parting) and reduced radius R_ij.
     fn force<R: Real>(&self, overlap: R, normal_velocity: R, reduced_radius: R) -> NormalForce<R>;
 
+    /// The key of its damping in a configuration, with its value: what [`NormalLaw::with_restitution`] sets.
+    fn damping(&self) -> (&'static str, f64);
+
     /// The same law without dissipation.
     #[must_use]
     fn undamped(&self) -> Self;

@@ -37,6 +37,10 @@ impl NormalLaw for Normal {
         with_normal_law!(self, law => law.force(overlap, normal_velocity, reduced_radius))
     }
 
+    fn damping(&self) -> (&'static str, f64) {
+        with_normal_law!(self, law => law.damping())
+    }
+
     fn undamped(&self) -> Self {
         with_normal_law!(self, law => law.undamped().into())
     }

@@ -10,6 +10,8 @@ pub(super) const CLAIM: Claim = Claim::new("F2", PROSE, TRANSITIONS, examine);
 
 /// What the source says.
 const EXPONENT: f64 = 1.0;
+/// (w_c − w)/epsdot^(3/2) within which a line is to have transition times.
+const NEXT: f64 = 0.5;
 /// Other thresholds that the fits are made with, relative to the one midway.
 const SHIFTS: [f64; 3] = [-0.1, 0.0, 0.1];
 
@@ -32,6 +34,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
     poor_fits(&mut draft, &walls);
+    let far = far_lines(&walls);
+    if !far.is_empty() {
+        draft.weakness("far", values!(near = NEXT, far = far.join("; ")));
+    }
     let summary = PROSE.text("summary", &[]);
     let (window, worse, near) = (WINDOW, WORSE, NEAR);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(window, worse, near));
@@ -50,7 +56,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
     let agrees = |exponent: &Uncertain| agrees(exponent, EXPONENT);
     let rates = one.rates(|line| line.near.as_ref()?.is_linear(agrees));
-    let exponents: Vec<Uncertain> = one.near().filter_map(|near| near.exponent).collect();
+    let exponents: Vec<Uncertain> = one.near().filter_map(Near::exponent).collect();
     let mean = weighted_mean(&exponents);
     let (wall, count) = (&one.name, exponents.len());
     let widths = STRAIGHT;
@@ -69,6 +75,18 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
         draft.weakness("led", values!(wall, count, exponent));
     }
     one.part(rates.hold(), number, why)
+}
+
+/// Wall, strain rate and distance of those lines whose nearest transition times lie farther from w_c than [`NEXT`].
+fn far_lines(walls: &[OnWall<Line<'_>>]) -> Vec<String> {
+    let of_wall = |one: &OnWall<Line<'_>>| {
+        let distances = at_rates(one.near(), Near::nearest_distance).into_iter();
+        let far = distances.filter(|(_, distance)| *distance > NEXT);
+        let words = far.map(|(rate, distance)| format!("{rate} ({})", number(distance, 1)));
+        let words: Vec<String> = words.collect();
+        (!words.is_empty()).then(|| format!("{}, *ε̇* = {}", one.name, words.join(", ")))
+    };
+    walls.iter().filter_map(of_wall).collect()
 }
 
 /// How many fits of either law the data exclude: a law can be the better one and still not be the whole truth.

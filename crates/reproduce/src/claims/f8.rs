@@ -65,7 +65,7 @@ impl<'a> Density<'a> {
 
     /// alpha next to w_c.
     fn exponent(&self) -> Option<Uncertain> {
-        self.near.as_ref()?.exponent
+        self.near.as_ref()?.exponent()
     }
 
     fn row(&self, wall: &str) -> Vec<String> {

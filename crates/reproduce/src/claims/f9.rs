@@ -204,7 +204,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(contacts, chance, next));
     draft.table("loops", &[], rows);
     of_dense_grains(&mut draft, evidence.study("dense-jams")?.rows());
-    of_lifetimes(&mut draft, evidence.study("jam-lifetime")?.rows());
+    of_lifetimes(&mut draft, &walls, evidence.study("jam-lifetime")?.rows());
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     let panels: Vec<ChartPanel> = walls.iter().filter_map(widest).collect();
     if !panels.is_empty() {
@@ -315,6 +315,8 @@ struct Lifetime {
     width: f64,
     /// Jams that broke up, and all of them.
     ended: [usize; 2],
+    /// Runs whose grains coast in the end, which are no jams.
+    void: usize,
     /// Mean number of periods until then, the others counted as censored; `None` where none broke up.
     mean: Option<Uncertain>,
     /// For how many periods they were watched.
@@ -326,7 +328,9 @@ struct Lifetime {
 impl Lifetime {
     fn of(rows: &[Row<'_>]) -> Self {
         let first = &rows[0];
-        let transitions: Vec<Transition> = rows.iter().map(Row::transition).collect();
+        let is_void = |row: &&Row<'_>| coasts(row, row.number("transition_threshold"));
+        let (void, jams): (Vec<Row<'_>>, Vec<Row<'_>>) = rows.iter().partition(is_void);
+        let transitions: Vec<Transition> = jams.iter().map(Row::transition).collect();
         let ended = transitions.iter().filter(|one| one.observed().is_some());
         let fit = fit_lifetime(Family::Gamma, &transitions)
             .or_else(|_| fit_lifetime(Family::Exponential, &transitions));
@@ -334,7 +338,8 @@ impl Lifetime {
             lattice: first.lattice(),
             strain_rate: first.strain_rate(),
             width: first.width(),
-            ended: [ended.count(), rows.len()],
+            ended: [ended.count(), jams.len()],
+            void: void.len(),
             mean: fit.ok().map(|fit| fit.mean.scaled(first.strain_rate())),
             watched: longest(rows),
             flow: scattered(rows, Row::flow_rate_ratio),
@@ -349,6 +354,7 @@ impl Lifetime {
             number(self.strain_rate, 3),
             number(self.width, 2),
             format!("{ended} of {all}"),
+            self.void.to_string(),
             self.mean.map_or_else(lasting, |mean| mean.to_string()),
             self.flow.to_string(),
         ]
@@ -367,10 +373,20 @@ impl Lifetime {
     }
 }
 
-/// How long jams last in tubes too wide for them. In a straight tube there are none.
-fn of_lifetimes(draft: &mut Draft, mut rows: Vec<Row<'_>>) {
-    rows.retain(|row| row.start() == Start::Jammed && !is_straight(row));
+/// How long jams last in tubes wider than the w_c of their wall. In a straight tube there are none.
+fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row<'_>>) {
+    let critical = |row: &Row<'_>| {
+        let name = wall_name(row.lattice(), STAGGERED);
+        let wall = walls.iter().find(|one| one.name == name)?;
+        let mut rates = wall.all.iter();
+        let shown = rates.find(|shown| shown.strain_rate == row.strain_rate())?;
+        Some(shown.found.critical.value)
+    };
+    let is_wide =
+        |row: &Row<'_>| !is_straight(row) && critical(row).is_none_or(|w_c| row.width() > w_c);
+    rows.retain(|row| row.start() == Start::Jammed && is_wide(row));
     let key = |row: &Row<'_>| (row.lattice(), row.strain_rate(), row.width());
+    let rows_in_all = rows.len();
     let groups = grouped(rows, key).into_iter();
     let found: Vec<Lifetime> = groups.map(|(_, rows)| Lifetime::of(&rows)).collect();
     let watched = found.iter().map(|one| one.watched).fold(0.0, f64::max);
@@ -380,8 +396,9 @@ fn of_lifetimes(draft: &mut Draft, mut rows: Vec<Row<'_>>) {
         return;
     }
     if !broken.is_empty() {
-        let (broken, tubes) = (broken.join("; "), found.len());
-        draft.paragraph("lifetimes", values!(watched, tubes, broken));
+        let (broken, tubes, runs) = (broken.join("; "), found.len(), rows_in_all);
+        let void: usize = found.iter().map(|one| one.void).sum();
+        draft.paragraph("lifetimes", values!(watched, tubes, void, runs, broken));
     }
     draft.table("lifetimes", &[], found.iter().map(Lifetime::row));
 }

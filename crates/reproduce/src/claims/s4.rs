@@ -33,13 +33,17 @@ fn forces(line: &ForceLine<'_>) -> Vec<f64> {
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = branch_rows(evidence)?;
     let lines = ForceLine::all_of(&rows);
-    let tight = judged(&lines);
-    if tight.is_empty() {
+    let drawn = judged(&lines);
+    if drawn.is_empty() {
         return Ok(nothing(&PROSE));
     }
+    let counting = ForceLine::all_of(&counting(&rows));
+    let tight = judged(&counting);
     let (forward, backward): (Vec<&ForceLine<'_>>, _) =
         tight.iter().partition(|line| negative(line).is_empty());
-    let verdict = if backward.is_empty() {
+    let verdict = if tight.is_empty() {
+        Verdict::Open
+    } else if backward.is_empty() {
         Verdict::Differs
     } else {
         Verdict::Reproduced
@@ -55,7 +59,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for (rate, force, flow) in lowest {
         draft.quantity("lowest", values!(rate, force), flow);
     }
-    draft.table("flows", &[], tight.iter().flat_map(|line| cells(line)));
+    draft.table("flows", &[], drawn.iter().flat_map(|line| cells(line)));
     draft.paragraph("method", values!(least = LEAST_BACK_FLOW, clear = CLEAR));
     // Those whose flow is negative at larger forces only, and not at the smallest.
     let only_beyond = |line: &&ForceLine<'_>| {
@@ -72,7 +76,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .y_range(-0.12..=0.12)
         .with(zero.tint(Tint::Grey).pattern(Pattern::Solid))
         .with(Reference::horizontal(-LEAST_BACK_FLOW));
-    let chart = ChartFigure::new(with_branches(panel, &tight))
+    let chart = ChartFigure::new(with_branches(panel, &drawn))
         .legend(LegendPlace::Below)
         .colour_scale(colours_of_rates(&lines));
     let (least, clear) = (LEAST_BACK_FLOW, CLEAR);
@@ -127,7 +131,7 @@ fn cells(line: &ForceLine<'_>) -> Vec<Vec<String>> {
     let row = |force: f64| {
         let starts = line.flow.each().map(|branch| branch.at(force));
         let flows = starts.map(|point| cell(point.map(|point| point.flow)));
-        let runs = starts.map(|point| point.map_or(0, |point| counted(&point.rows)));
+        let runs = starts.map(|point| point.map_or(0, |point| counting(&point.rows).len()));
         let escaped = starts.into_iter().flatten().map(Point::escaped);
         let [from_rest, from_jammed] = flows;
         vec![

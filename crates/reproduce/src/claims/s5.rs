@@ -31,15 +31,18 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         others.find(|other| other.strain_rate == line.strain_rate)
     };
     let pairs: Vec<Pair<'_, '_>> = tight.iter().map(|line| (*line, beside(line))).collect();
-    let flows_back = tight.iter().any(|line| !negative(line).is_empty());
-    let points = || tight.iter().flat_map(|line| line.flow.points());
-    let never = points().all(|point| point.flow.is_above(-LEAST_BACK_FLOW));
+    let counting = ForceLine::all_of(&counting(&rows));
+    let counting = judged(&counting);
+    let flows_back = counting.iter().any(|line| !negative(line).is_empty());
+    let mut points = counting.iter().flat_map(|line| line.flow.points());
+    let never = points.all(|point| point.flow.is_above(-LEAST_BACK_FLOW));
     let verdict = match (flows_back, never) {
         (true, _) => Verdict::Differs,
-        (false, true) => Verdict::Reproduced,
-        (false, false) => Verdict::Open,
+        (false, true) if !counting.is_empty() => Verdict::Reproduced,
+        (false, _) => Verdict::Open,
     };
-    let (summary, statistics) = (summary(&tight, flows_back), together(tight.iter().copied()));
+    let statistics = together(tight.iter().copied());
+    let summary = summary(&counting, flows_back);
     let mut draft = draft(PROSE);
     let compared = pairs.iter().flat_map(compared);
     for (rate, without, with) in compared.filter(|(.., with)| with.flow.value < 0.0) {

@@ -45,10 +45,7 @@ fn dashpots(configuration: &Configuration) -> Vec<(&'static str, f64, f64)> {
         (Control::Stress { .. }, Some(wall)) => 1.0 / grain + 1.0 / grain.min(wall.sphere_mass),
         _ => 2.0 / grain,
     };
-    let key = match model.normal {
-        Normal::Linear(_) => "contact.normal_damping",
-        Normal::Hertz(_) => "contact.dissipation_time",
-    };
+    let (key, _) = model.normal.damping();
     let mut found = vec![(
         key,
         normal_damping(model.normal, diameter),

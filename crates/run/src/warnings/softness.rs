@@ -1,7 +1,7 @@
 //! Whether grains as soft, or as hard, as the units in SI make them can be what was meant.
 
 use peristalsis_configuration::{
-    Body, Configuration, Control, Elasticity, ScheduledParameter, Units,
+    Body, Configuration, Control, Elasticity, ScheduledParameter, Units, elasticity_key,
 };
 use peristalsis_physics::contact::NormalLaw;
 
@@ -100,21 +100,16 @@ pub(super) struct Material {
 
 impl Material {
     pub(super) fn of(units: &Units) -> Self {
-        match units.elasticity {
-            Elasticity::Stiffness(value) => Self {
-                key: "units.stiffness",
-                value,
-                name: "stiffness",
-                unit: "N/m",
-                per_speed: 1.0,
-            },
-            Elasticity::YoungModulus(value) => Self {
-                key: "units.young_modulus",
-                value,
-                name: "modulus",
-                unit: "Pa",
-                per_speed: 0.8,
-            },
+        let (name, unit, per_speed) = match units.elasticity {
+            Elasticity::Stiffness(_) => ("stiffness", "N/m", 1.0),
+            Elasticity::YoungModulus(_) => ("modulus", "Pa", 0.8),
+        };
+        Self {
+            key: elasticity_key(units.elasticity),
+            value: units.elasticity.value(),
+            name,
+            unit,
+            per_speed,
         }
     }
 }

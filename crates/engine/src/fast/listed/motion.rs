@@ -63,7 +63,7 @@ impl Moved {
         if least > largest {
             return Drift::NONE;
         }
-        let lateral = largest_x.max(-least_x).hypot(largest_y.max(-least_y));
+        let lateral = libm::hypot(largest_x.max(-least_x), largest_y.max(-least_y));
         Drift {
             least,
             largest,

@@ -115,7 +115,7 @@ mod tests {
                 let both = u32::from(meets(one, other)) + u32::from(meets(other, one));
                 if one == other {
                     assert_eq!(both, 0);
-                } else if (x - u).hypot(y - v) < cutoff {
+                } else if libm::hypot(x - u, y - v) < cutoff {
                     assert_eq!(both, 1, "({x}, {y}) and ({u}, {v})");
                 } else {
                     assert!(both < 2);

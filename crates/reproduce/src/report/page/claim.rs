@@ -1,6 +1,7 @@
 //! The section of a claim.
 
-use crate::{Examination, Quantity, ReportFigure, ReportTable, WallVerdict};
+use crate::claim::Claim;
+use crate::{Examination, Finding, Quantity, ReportFigure, ReportTable, WallVerdict};
 use maud::{Markup, html};
 use peristalsis_analysis::number::{counted, distance, interval, plain};
 
@@ -41,6 +42,7 @@ pub(super) fn section(report: &Report, place: usize, examination: &Examination) 
             @for (number, figure) in finding.figures.iter().enumerate() {
                 (drawing(claim.id, place, number, figure))
             }
+            (missing_figures(claim, finding))
             @for paragraph in &finding.paragraphs { p { (rich(paragraph)) } }
             @for (number, one) in finding.tables.iter().enumerate() { (table(claim.id, number, one)) }
             @if !finding.weaknesses.is_empty() {
@@ -59,6 +61,27 @@ pub(super) fn section(report: &Report, place: usize, examination: &Examination) 
                     }
                     "."
                 }
+            }
+        }
+    }
+}
+
+/// The figures of a claim that the runs at hand do not suffice for, and the command that draws them.
+fn missing_figures(claim: &Claim, finding: &Finding) -> Markup {
+    let is_missing = |name: &&str| finding.figures.iter().all(|figure| figure.name != *name);
+    let missing: Vec<String> = claim
+        .prose
+        .figures()
+        .filter(is_missing)
+        .map(|name| name.replace('-', " "))
+        .collect();
+    html! {
+        @if !missing.is_empty() {
+            p.meta {
+                "Not drawn, for it takes runs that are missing here, or their time series, profiles or spheres, which tables do not hold: "
+                (missing.join(", ")) ". "
+                code { "peristalsis reproduce --full --only " (claim.id) }
+                " computes them."
             }
         }
     }
