@@ -66,7 +66,8 @@ impl<'a> Collapse<'a> {
     /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of it,
     /// by random numbers of `seed`. Without a correction the errors hold only where the data have none: a small correction shifts
     /// the exponents, and the fit still looks good. The fit is therefore compared with fits that allow for c = -1 and 1. It
-    /// is not trusted where one of them may take a parameter out of its interval of 95 per cent. Look at
+    /// is not trusted where one of them may take a parameter out of its interval of 95 per cent, nor where a common curve of
+    /// three times as many knots does: it then bends too sharply for them. Look at
     /// [`doubts`](CollapseEstimate::doubts). Compare Harada, Phys. Rev. E 84, 056704 (2011).
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use crate::collapse::CurvePoint;
 
 /// Intervals between the knots of the common curve.
-const INTERVALS: usize = 14;
+pub(crate) const INTERVALS: usize = 14;
 /// Splines that are not 0 within an interval.
 const SPLINES: usize = 4;
 /// Directions of the coefficients that smoothness leaves free: height, slope and bend of the curve, so that parameters that
@@ -37,11 +37,16 @@ impl Smooth {
 
     /// Likelihood of points about a curve `f(X) + correction g(X)`; f alone where it `is_corrected` not.
     ///
-    /// f is a cubic spline with even knots whose third differences are normal numbers of variance `1/stiffness` in
+    /// f is a cubic spline of so many even `intervals` whose third differences are normal numbers of variance `1/stiffness` in
     /// units of the mean error, and so integrated out (Eilers & Marx, Stat. Sci. 11, 89 (1996)); g is another, of second
     /// differences. What lies between the points is thus as uncertain as the curve is free to bend there, and curves that
     /// are pulled apart gain nothing.
-    pub(crate) fn of(points: &[Scaled], ln_stiffness: f64, is_corrected: bool) -> Option<Self> {
+    pub(crate) fn of(
+        points: &[Scaled],
+        intervals: usize,
+        ln_stiffness: f64,
+        is_corrected: bool,
+    ) -> Option<Self> {
         let n = points.len() as f64;
         let logarithms = points.iter().map(|one| libm::log(one.point.error));
         let unit = libm::exp(logarithms.sum::<f64>() / n);
@@ -53,11 +58,11 @@ impl Smooth {
         }
         // The coefficients of both curves alternate, so that those which meet lie close.
         let curves = if is_corrected { 2 } else { 1 };
-        let each = INTERVALS + SPLINES - 1;
+        let each = intervals + SPLINES - 1;
         let mut system = System::new(curves * each, curves * SPLINES);
         for Scaled { correction, point } in points {
             let mut row = [(0, 0.0); 2 * SPLINES];
-            for (place, (k, value)) in splines((point.x - low) / span, INTERVALS).enumerate() {
+            for (place, (k, value)) in splines((point.x - low) / span, intervals).enumerate() {
                 row[curves * place] = (curves * k, value);
                 if is_corrected {
                     row[curves * place + 1] = (curves * k + 1, value * correction);
@@ -215,8 +220,12 @@ mod tests {
         let points = [1.0, 0.5, 0.25].into_iter().flat_map(at);
         let points = points.map(|(size, x)| scaled(size, x, 2.0 * x + 2.0 * (3.0 - x) * size));
         let points: Vec<Scaled> = points.collect();
-        let left = |is_corrected| Smooth::of(&points, 3.0, is_corrected).unwrap().squares;
+        let left = |is_corrected| {
+            Smooth::of(&points, INTERVALS, 3.0, is_corrected)
+                .unwrap()
+                .squares
+        };
         assert!(left(false) > 10.0 && left(true) < 1e-6);
-        assert!(Smooth::of(&points[..1], 0.0, false).is_none());
+        assert!(Smooth::of(&points[..1], INTERVALS, 0.0, false).is_none());
     }
 }

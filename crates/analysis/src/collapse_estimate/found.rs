@@ -239,6 +239,13 @@ impl<'a> Found<'a> {
         [-1.0, 1.0].into_iter().find_map(moved_by)
     }
 
+    /// The first parameter that leaves its interval if the common curve may bend more sharply.
+    fn moved_by_knots(&self, parameters: &[Uncertain]) -> Option<usize> {
+        let best = self.likelihood.refined().settle(&self.best.place)?;
+        let mut places = parameters.iter().zip(best.place);
+        places.position(|(one, place)| !one.interval_95.contains(place))
+    }
+
     /// Why not to trust the parameters.
     pub(super) fn doubts(&self, parameters: &[Uncertain]) -> Vec<String> {
         let mut doubts = Vec::new();
@@ -275,6 +282,12 @@ impl<'a> Found<'a> {
         if stretch > MOST_STRETCH {
             doubts.push(format!(
                 "the points lie {stretch:.1} times as far from one curve as their errors say: the scaling does not hold, or the errors are wrong"
+            ));
+        }
+        if let Some(place) = self.moved_by_knots(parameters) {
+            let number = place + 1;
+            doubts.push(format!(
+                "the common curve bends too sharply for its knots, and with more of them parameter {number} leaves its interval: take points nearer to where the curves bend"
             ));
         }
         let is_corrected = self.likelihood.is_corrected();

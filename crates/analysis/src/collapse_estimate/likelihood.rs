@@ -2,7 +2,7 @@
 
 use crate::collapse_fit::{Collapse, SHORT};
 use crate::error::{Error, checked, checked_positive, enough, ensure};
-use crate::master_curve::{Scaled, Smooth};
+use crate::master_curve::{INTERVALS, Scaled, Smooth};
 use crate::numerics::quasi_newton::{Smallest, quasi_newton};
 use crate::uncertain::Uncertain;
 
@@ -10,6 +10,8 @@ use crate::uncertain::Uncertain;
 const LOST: f64 = 5.0;
 /// Bounds of ln of the stiffness of the common curve.
 const STIFFNESSES: std::ops::RangeInclusive<f64> = -20.0..=16.0;
+/// Factor of the knots of a common curve that may bend more sharply.
+const FINER: usize = 3;
 /// Most times that a better place is followed up.
 pub(super) const MOST_ROUNDS: u32 = 8;
 
@@ -21,6 +23,8 @@ pub(super) struct Likelihood<'a> {
     pub(super) steps: &'a [f64],
     /// Parameters known from elsewhere, by their place.
     known: &'a [(usize, Uncertain)],
+    /// Intervals between the knots of the common curve.
+    intervals: usize,
     /// Size of the correction at every curve, 1 at the largest, where one is allowed for.
     corrections: Option<Vec<f64>>,
 }
@@ -63,6 +67,7 @@ impl<'a> Likelihood<'a> {
             collapse,
             steps,
             known,
+            intervals: INTERVALS,
             corrections,
         };
         enough(new.points(), new.free() + steps.len() + 4)?;
@@ -77,6 +82,15 @@ impl<'a> Likelihood<'a> {
     /// The same data with a correction of another power; `None` where there are too few points for it.
     pub(super) fn allowing(&self, power: f64) -> Option<Self> {
         Self::new(self.collapse, self.steps, Some(power), self.known).ok()
+    }
+
+    /// The same data with a common curve that can bend more sharply.
+    pub(super) fn refined(&self) -> Self {
+        let intervals = FINER * self.intervals;
+        Self {
+            intervals,
+            ..self.clone()
+        }
     }
 
     /// Number of parameters of the scaling that the fit has to determine alone.
@@ -106,7 +120,7 @@ impl<'a> Likelihood<'a> {
             let of_curve = points.iter().filter(|point| point.is_usable());
             usable.extend(of_curve.map(|&point| Scaled { correction, point }));
         }
-        let curve = Smooth::of(&usable, ln_stiffness, self.is_corrected())?;
+        let curve = Smooth::of(&usable, self.intervals, ln_stiffness, self.is_corrected())?;
         Some((curve, self.points() - usable.len()))
     }
 

@@ -201,6 +201,42 @@ fn errors_of_a_critical_line_cover() {
     assert_eq!((corrected.trusted, is_said), (0, Some(&2)));
 }
 
+/// One window of x for all sizes: scaled, the largest system spans 32 widths of the bend, more than the knots resolve.
+#[test]
+fn a_curve_that_bends_too_sharply_is_not_trusted() {
+    let sizes = [4.0, 8.0, 16.0, 32.0];
+    let curve = |seed: u64, (k, &size): (usize, &f64)| {
+        let noise = white_noise(seed * 10 + k as u64, 21);
+        let of = |(j, noise): (usize, &f64)| {
+            let x = -0.5 + 0.05 * j as f64;
+            let y = libm::pow(size, -0.5) / (1.0 + libm::exp(x * size));
+            point(x, y + 0.003 * noise, 0.003)
+        };
+        Curve {
+            parameter: size,
+            points: noise.iter().enumerate().map(of).collect(),
+        }
+    };
+    let kind = Kind {
+        truth: vec![0.5, 1.0, 0.0],
+        steps: vec![0.1, 0.1, 0.02],
+        ..kinds().swap_remove(0)
+    };
+    for seed in 0..3 {
+        let curves: Vec<Curve> = sizes
+            .iter()
+            .enumerate()
+            .map(|one| curve(seed, one))
+            .collect();
+        let found = kind.estimate(&curves, Some(-1.0), seed).unwrap();
+        let held = found.parameters.iter().zip(&kind.truth);
+        let held = held
+            .filter(|(one, truth)| one.interval_95.contains(**truth))
+            .count();
+        assert!(!found.trusted || held == 3, "{found:?}");
+    }
+}
+
 /// With a correction in the data that is not allowed for, exponents are wrong, and the answer says that it cannot be
 /// trusted; allowed for, they are right. At known critical points 59 of 60 called themselves trusted.
 #[test]
