@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use peristalsis_configuration::{Configuration, Control};
+use peristalsis_configuration::{Configuration, Control, HOUR};
 use peristalsis_run::{RunFolder, files};
 use serde_json::{Value, json};
 
@@ -96,6 +96,7 @@ fn entry(path: &Path) -> Value {
         .filter(|_| configuration.run.periods.is_some())
         .map(|time| time * configuration.drive.strain_rate);
     let (drive, amplitude) = amplitude(&configuration);
+    let (mass_flow, mass_flow_error, mass_flow_unit) = mass_flow(&of("si"), &of("open"));
     json!({
         "folder": folder,
         "grains": configuration.grains.number,
@@ -110,9 +111,36 @@ fn entry(path: &Path) -> Value {
         "status": status,
         "flow_rate_ratio": of("flow_rate_ratio"),
         "flow_rate_ratio_error": of("flow_rate_ratio_error"),
+        "mass_flow": mass_flow,
+        "mass_flow_error": mass_flow_error,
+        "mass_flow_unit": mass_flow_unit,
         "transition_time": of("transition_time"),
         "warnings": warnings,
     })
+}
+
+/// Mass that an open tube discharges, of another that flows along the wave, its error and their unit; missing of a periodic
+/// tube without units in SI.
+fn mass_flow(si: &Value, open: &Value) -> (Option<f64>, Option<f64>, Option<&'static str>) {
+    let number = |table: &Value, key: &str| table[key].as_f64();
+    let in_si = ["discharge_rate_kg_per_s", "mass_flow_rate_kg_per_s"].into_iter();
+    let mut in_si = in_si.filter_map(|key| {
+        let error = number(si, &format!("{key}_error"));
+        Some((number(si, key)?, error))
+    });
+    if let Some((rate, error)) = in_si.next() {
+        return (
+            Some(HOUR * rate),
+            error.map(|error| HOUR * error),
+            Some("kg/h"),
+        );
+    }
+    let rate = number(open, "discharge_rate");
+    (
+        rate,
+        number(open, "discharge_rate_error"),
+        rate.map(|_| "m/t"),
+    )
 }
 
 /// The key of the wave's amplitude, and its value.
@@ -157,6 +185,7 @@ fn table(runs: &[Value]) -> String {
         "periods",
         "status",
         "J/Jmax within the run",
+        "mass flow",
         "transition, t",
         "warnings",
     ];
@@ -170,7 +199,7 @@ fn table(runs: &[Value]) -> String {
                 .unwrap_or(0)
         })
         .collect();
-    let line = |row: &[String; 9]| {
+    let line = |row: &[String; 10]| {
         let cells = row
             .iter()
             .zip(&widths)
@@ -181,19 +210,24 @@ fn table(runs: &[Value]) -> String {
     rows.iter().map(line).collect()
 }
 
-fn row(run: &Value) -> [String; 9] {
+fn row(run: &Value) -> [String; 10] {
     let folder = run["folder"].as_str().unwrap_or_default().to_owned();
     let status = run["status"].as_str().unwrap_or_default().to_owned();
     if status == "unreadable" {
-        let mut row = [const { String::new() }; 9];
+        let mut row = [const { String::new() }; 10];
         (row[0], row[5]) = (folder, status);
         return row;
     }
     let number = |key: &str| run[key].as_f64();
     let plain = |key: &str| number(key).map_or("–".to_owned(), |it| it.to_string());
     let few_digits = |key: &str| number(key).map_or("–".to_owned(), rounded);
-    let error = number("flow_rate_ratio_error").unwrap_or(f64::NAN);
-    let flow = number("flow_rate_ratio").map_or("–".to_owned(), |ratio| measured((ratio, error)));
+    let with_error = |key: &str| {
+        let error = number(&format!("{key}_error")).unwrap_or(f64::NAN);
+        number(key).map(|value| measured((value, error)))
+    };
+    let missing = || "–".to_owned();
+    let unit = run["mass_flow_unit"].as_str().unwrap_or_default();
+    let mass_flow = with_error("mass_flow").map_or_else(missing, |flow| format!("{flow} {unit}"));
     let done = |done: &str, asked: &str, unit: &str| {
         let done = number(done).map_or("–".to_owned(), |it| {
             let thousandths = (1e3 * it).round() / 1e3;
@@ -215,7 +249,8 @@ fn row(run: &Value) -> [String; 9] {
             None => done("time", "duration_asked", " t"),
         },
         status,
-        flow,
+        with_error("flow_rate_ratio").unwrap_or_else(missing),
+        mass_flow,
         number("transition_time").map_or("–".to_owned(), |time| format!("{time:.1}")),
         plain("warnings"),
     ]

@@ -14,7 +14,7 @@ use peristalsis_run::{
 };
 use serde_json::{Value, json};
 
-use super::words::measured;
+use super::words::{mass_flow, measured};
 use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, not_diverged, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
@@ -219,22 +219,28 @@ fn line(seed: u64, outcome: &Outcome) -> String {
     let summary = &outcome.summary;
     let (ratio, error) = summary.flow_rate_ratio;
     let said = measured(summary.flow_rate_ratio);
-    let flow = match known_error(ratio, error) {
-        Some(_) => format!("J/Jmax = {said} within this run"),
-        None if ratio.is_finite() => format!("J/Jmax = {said}"),
-        None => "no J/Jmax".to_owned(),
-    };
-    let transition = match summary.transition_time {
-        Some(time) => format!("transition at t = {time:.1}"),
-        None => "no transition".to_owned(),
-    };
+    let mut words = Vec::new();
+    if ratio.is_finite() {
+        let within = known_error(ratio, error).map_or("", |_| " within this run");
+        words.push(format!("J/Jmax = {said}{within}"));
+        words.push(match summary.transition_time {
+            Some(time) => format!("transition at t = {time:.1}"),
+            None => "no transition".to_owned(),
+        });
+    }
+    if let Some((flow, unit)) = mass_flow(summary) {
+        words.push(format!("mass flow {} {unit}", measured(flow)));
+    }
+    if words.is_empty() {
+        words.push("no J/Jmax".to_owned());
+    }
     let ending = match &outcome.ending {
         Ending::Complete => "",
         Ending::Stopped(_) => "; stopped",
         Ending::Unwritten(_) => "; stopped, since its trajectory cannot be written",
         Ending::Failed(_) => "; diverged",
     };
-    format!("seed {seed}: {flow}; {transition}{ending}")
+    format!("seed {seed}: {}{ending}", words.join("; "))
 }
 
 /// New warnings of the replicates: the first warning of each key, with its seed.
@@ -267,6 +273,9 @@ fn conclude(
     let complete: Vec<&Outcome> = complete.collect();
     let ratios = complete.iter().map(|it| it.summary.flow_rate_ratio.0);
     let flow = Scatter::of(ratios.filter(|ratio| ratio.is_finite()).collect());
+    let flows = complete.iter().filter_map(|it| mass_flow(&it.summary));
+    let (mass_flows, units): (Vec<_>, Vec<_>) = flows.map(|((rate, _), unit)| (rate, unit)).unzip();
+    let mass_flow = Scatter::of(mass_flows).zip(units.first());
     let times: Vec<f64> = complete
         .iter()
         .filter_map(|it| it.summary.transition_time)
@@ -292,6 +301,11 @@ fn conclude(
             "replicates": worked.iter().map(of_replicate).collect::<Vec<_>>(),
             "complete": complete.len(),
             "flow_rate_ratio": flow.as_ref().map(Scatter::report),
+            "mass_flow": mass_flow.as_ref().map(|(flow, unit)| {
+                let mut report = flow.report();
+                report["unit"] = json!(unit);
+                report
+            }),
             "transitions": transitions,
             "transition_time": transition.as_ref().map(Scatter::report),
         }))?;
@@ -303,7 +317,12 @@ fn conclude(
         if let Some(flow) = &flow {
             text += &format!("J/Jmax = {}\n", flow.in_words());
         }
-        match (&transition, complete.len()) {
+        if let Some((flow, unit)) = &mass_flow {
+            text += &format!("mass flow in {unit} = {}\n", flow.in_words());
+        }
+        // Without a wave there is nothing to pass through.
+        let runs = flow.as_ref().map_or(0, |_| complete.len());
+        match (&transition, runs) {
             (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words()),
             (None, 0) => {}
             (None, number) => {

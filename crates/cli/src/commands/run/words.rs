@@ -174,6 +174,16 @@ fn wear(summary: &Summary) -> String {
     format!("\nwear: sliding on the wall takes {power}, {per_area} of wall")
 }
 
+/// Mass that an open tube discharges, of another that flows along the wave, with its error and unit; `None` of a periodic tube
+/// without units in SI, where J/Jmax says as much.
+pub(crate) fn mass_flow(summary: &Summary) -> Option<((f64, f64), &'static str)> {
+    let discharged = summary.discharge.map(|it| it.rate);
+    let own = discharged.unwrap_or_else(|| summary.mass_flow_rate());
+    let per_hour = summary.measured_in_si(own, |units| HOUR * units.mass_flow());
+    let in_si = per_hour.map(|rate| (rate, "kg/h"));
+    in_si.or_else(|| Some((discharged?, "m/t")))
+}
+
 /// A number with its error, if one is known; with the minus of a keyboard, as all numbers in a terminal.
 pub(crate) fn measured((value, error): (f64, f64)) -> String {
     plain_text(&with_error(value + 0.0, error)).replace('−', "-")
