@@ -285,7 +285,7 @@ pub(crate) struct ReproduceArguments {
     /// Begin from nothing and compute every run, in days.
     #[arg(long, conflicts_with_all = ["quick", "import"])]
     pub(crate) fresh: bool,
-    /// Begin from nothing and compute a few runs of everything, in minutes: shows each analysis, too few runs for verdicts.
+    /// Begin from nothing and compute a few runs of everything, in some twenty minutes: shows each analysis, too few runs for most verdicts.
     #[arg(long)]
     pub(crate) quick: bool,
     /// Only these claims, such as F3,F6.

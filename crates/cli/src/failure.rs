@@ -135,7 +135,9 @@ impl Failure {
                 },
                 folder.display()
             )),
-            Self::Results { folder, source: RunError::Format(_) } => failed(unwritten(folder)),
+            Self::Results { folder, source: RunError::Format(error) } if !is_closed(error) => {
+                failed(unwritten(folder))
+            }
             Self::Results { source, .. } => of_run(source),
             Self::Study(error) => of_study(error),
             Self::Claim(error) => of_claim(error),
@@ -206,9 +208,21 @@ const FEWER_GRAINS: &str = "take fewer grains (grains.number, grains.volume_frac
 const FOREIGN_FRAMES: &str = "put its files back, or go on without: move the folder's trajectory.toml and trajectory files away";
 const MEND: &str = "nothing that was finished is lost: mend the disk and call again";
 
+/// Whether the place cannot be written to by this user.
+fn is_closed(error: &FormatError) -> bool {
+    use std::io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
+    let FormatError::Io { source, .. } = error else {
+        return false;
+    };
+    matches!(source.kind(), PermissionDenied | ReadOnlyFilesystem)
+}
+
 /// What to do about results that could not all be written.
 fn unwritten(folder: &RunFolder) -> String {
     let path = folder.path().display();
+    if !folder.path().exists() {
+        return "its folder is gone, and what was in it: begin anew".to_owned();
+    }
     let state = folder.state();
     match state.is_ok_and(|run| folder.has_final_results_of(&run)) {
         true => format!(
@@ -238,6 +252,9 @@ fn of_run(error: &RunError) -> Advice {
             "name a GSD trajectory that this program wrote, or let the frames be computed: --from state, --from start",
         ),
         RunError::Format(FormatError::NotATrajectory { .. }) => wrong(FOREIGN_FRAMES),
+        RunError::Format(error) if is_closed(error) => wrong(
+            "make the folder writable for this user, or begin in another: peristalsis run DIR/config.toml --out OTHER",
+        ),
         RunError::TooShort { .. } => wrong(
             "ask for at least as much with --periods or --duration, or begin anew in another folder: peristalsis run \
              DIR/config.toml --set run.periods=N --out OTHER",

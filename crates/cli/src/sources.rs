@@ -108,7 +108,13 @@ fn is_standard_input(path: &Path) -> bool {
 fn text_of(path: &Path) -> std::io::Result<String> {
     static STANDARD_INPUT: OnceLock<String> = OnceLock::new();
     if !is_standard_input(path) {
-        return std::fs::read_to_string(path);
+        let text = std::fs::read(path)?;
+        return String::from_utf8(text).map_err(|error| {
+            let (text, before) = (error.as_bytes(), error.utf8_error().valid_up_to());
+            let line = 1 + text[..before].iter().filter(|byte| **byte == b'\n').count();
+            let message = format!("line {line} is not text in UTF-8");
+            std::io::Error::new(std::io::ErrorKind::InvalidData, message)
+        });
     }
     if let Some(text) = STANDARD_INPUT.get() {
         return Ok(text.clone());

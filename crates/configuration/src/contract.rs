@@ -14,7 +14,7 @@ pub(crate) fn check(table: &Table, problems: &mut Problems) {
         known: &schema::KNOWN_KEYS,
         problems,
     }
-    .table(table, &schema::SCHEMA, "");
+    .table(table, None, &schema::SCHEMA, "");
 }
 
 /// Checks a document of another kind against its own JSON schema: unknown keys, types, names and ranges, with the messages
@@ -24,7 +24,7 @@ pub fn check_against(schema: &Value, table: &Table, problems: &mut Problems) {
         known: &schema::keys_of(schema),
         problems,
     }
-    .table(table, schema, "");
+    .table(table, None, schema, "");
 }
 
 /// Unknown keys for which the nearest known one is looked up.
@@ -41,7 +41,8 @@ struct Contract<'a> {
 }
 
 impl Contract<'_> {
-    fn table(&mut self, table: &Table, schema: &Value, path: &str) {
+    /// `origin`: where the table stands, of one that is written as a value.
+    fn table(&mut self, table: &Table, origin: Option<&Origin>, schema: &Value, path: &str) {
         // An object without properties (the record's derived values) is open.
         let Some(properties) = schema["properties"].as_object() else {
             return;
@@ -77,8 +78,9 @@ impl Contract<'_> {
             let mut problem = Problem::new(ProblemKind::Missing, message)
                 .key(full)
                 .help(help);
-            if let Some(entry) = table.values().next() {
-                problem = problem.at(&entry.key, "in this table");
+            let first = table.values().next().map(|entry| &entry.key);
+            if let Some(origin) = first.or(origin) {
+                problem = problem.at(origin, "in this table");
             }
             self.problems.push(problem);
         }
@@ -96,7 +98,7 @@ impl Contract<'_> {
             return self.wrong_type(item, schema, path);
         }
         match &item.node {
-            Node::Table(table) => self.table(table, schema, path),
+            Node::Table(table) => self.table(table, Some(&item.origin), schema, path),
             Node::Array(items) => self.array(item, items, schema, path),
             Node::Text(text) => self.name(item, text, schema, path),
             Node::Integer(integer) => self.range(item, *integer as f64, schema, path),

@@ -82,6 +82,8 @@ pub struct SnapshotFigure<'a> {
 
 /// A mean grain is drawn no smaller than this across, in points, as long as the page allows.
 const LEAST_GRAIN: f64 = 7.5;
+/// Height of a picture over its width, at most: of grains that are too small for it rows are longer.
+const MOST_HEIGHT: f64 = 5.0;
 /// A row is never shorter than this many grain diameters.
 const SHORTEST_ROW: f64 = 10.0;
 /// About the space beside a row, in points.
@@ -113,7 +115,7 @@ impl SnapshotFigure<'_> {
         }
         let (diameter, _) = extent(parts.iter().map(Part::diameter));
         let (_, longest) = extent(parts.iter().map(|part| part.snapshot.length));
-        let row = row_length(longest, self.width.points() - BESIDE, diameter);
+        let row = row_length(longest, self.width.points() - BESIDE, diameter, reach);
         let reach = reach.max(LEAST_REACH * row);
         let extents: Vec<String> = self.snapshots.iter().map(Snapshot::extent).collect();
         let is_one_extent = extents.windows(2).all(|pair| pair[0] == pair[1]);
@@ -284,10 +286,13 @@ fn check_sphere(
     positive("diameter of a sphere", sphere.diameter).map(|_| ())
 }
 
-/// Length of a row: all rows equal, as few as show the grains large enough.
-fn row_length(length: f64, room: f64, diameter: f64) -> f64 {
+/// Length of a row: all rows equal, as few as show the grains large enough, in a picture that is not too high.
+fn row_length(length: f64, room: f64, diameter: f64, reach: f64) -> f64 {
     let longest = (room / LEAST_GRAIN).max(SHORTEST_ROW) * diameter;
-    length / (length / longest - 1e-9).ceil().max(1.0)
+    // So many rows of 2 reach by length/rows are so many widths high.
+    let most = (MOST_HEIGHT * length / (2.0 * reach)).sqrt().floor();
+    let rows = (length / longest - 1e-9).ceil().min(most);
+    length / rows.max(1.0)
 }
 
 #[cfg(test)]
@@ -414,8 +419,10 @@ mod tests {
 
     #[test]
     fn a_long_tube_is_broken_into_equal_rows() {
-        assert!((row_length(100.0, 480.0, 1.0) - 50.0).abs() < 1e-9);
-        assert!((row_length(20.0, 480.0, 1.0) - 20.0).abs() < 1e-9);
+        assert!((row_length(100.0, 480.0, 1.0, 2.0) - 50.0).abs() < 1e-9);
+        assert!((row_length(20.0, 480.0, 1.0, 2.0) - 20.0).abs() < 1e-9);
+        // Of grains that are too small for it the picture is five widths high.
+        assert!((row_length(40.0, 480.0, 0.01, 4.0) - 8.0).abs() < 1e-9);
     }
 
     #[test]

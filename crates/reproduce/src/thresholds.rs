@@ -164,8 +164,9 @@ pub(crate) const ONE_FLOW_BY_CHANCE: f64 = 0.01;
 /// Distance beyond w_c \[d\] within which both starts must have runs to say that both flows exist nowhere: loops are seldom
 /// narrower.
 pub(crate) const NEXT_TO_THE_FALL: f64 = 0.02;
-/// Contacts a grain below which grains do not jam but coast, past one another and the wall.
-pub(crate) const LEAST_CONTACTS: f64 = 0.05;
+/// Contacts a grain below which grains do not jam but coast, past one another and the wall. Of 2,258 fast flows from jammed 1,581
+/// have fewer than 0.8, 662 have more than 1.8, and 15 lie between.
+pub(crate) const LEAST_CONTACTS: f64 = 1.0;
 
 // Q1: small strain rates.
 

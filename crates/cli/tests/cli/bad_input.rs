@@ -127,7 +127,11 @@ fn files_that_are_not_toml_or_not_text_or_not_there() {
         b"hello world\n",
         &["tube.toml:1:", "this is not TOML", "key = value"],
     );
-    refused(RUN, b"\x89PNG\r\n\x1a\n\xff\xfe", &["tube.toml", "UTF-8"]);
+    refused(
+        RUN,
+        b"\x89PNG\r\n\x1a\n\xff\xfe",
+        &["tube.toml", "line 1 is not text in UTF-8"],
+    );
     let missing = ["tube.toml", "these keys are missing", "tube.radius"];
     refused(CHECK, b"", &missing);
     let place = Place::new();

@@ -40,8 +40,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let summary = PROSE.text("summary", &[]);
     let (window, worse, near) = (WINDOW, WORSE, NEAR);
-    draft.finding.paragraphs = PROSE.paragraphs("method", values!(window, worse, near));
-    draft.table("laws", values!(window), laws);
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(window, worse));
+    draft.table("laws", values!(window, near), laws);
     draft.table("exponents", &[], rows);
     draft.table("sensitivity", &[], sensitivity);
     let lines = walls.iter().flat_map(|one| &one.all);

@@ -359,18 +359,6 @@ impl Lifetime {
             self.flow.to_string(),
         ]
     }
-
-    /// Where it broke up, and after how long.
-    fn in_words(&self) -> String {
-        let [ended, all] = self.ended;
-        let (wall, rate, width) = (
-            wall_name(self.lattice, STAGGERED),
-            self.strain_rate,
-            self.width,
-        );
-        let time = cell(self.mean);
-        PROSE.text("broken", values!(ended, all, wall, rate, width, time))
-    }
 }
 
 /// How long jams last in tubes wider than the w_c of their wall. In a straight tube there are none.
@@ -386,20 +374,20 @@ fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row
         |row: &Row<'_>| !is_straight(row) && critical(row).is_none_or(|w_c| row.width() > w_c);
     rows.retain(|row| row.start() == Start::Jammed && is_wide(row));
     let key = |row: &Row<'_>| (row.lattice(), row.strain_rate(), row.width());
-    let rows_in_all = rows.len();
     let groups = grouped(rows, key).into_iter();
     let found: Vec<Lifetime> = groups.map(|(_, rows)| Lifetime::of(&rows)).collect();
     let watched = found.iter().map(|one| one.watched).fold(0.0, f64::max);
-    let broken = found.iter().filter(|one| one.ended[0] > 0);
-    let broken: Vec<String> = broken.map(Lifetime::in_words).collect();
     if found.is_empty() {
         return;
     }
-    if !broken.is_empty() {
-        let (broken, tubes, runs) = (broken.join("; "), found.len(), rows_in_all);
-        let void: usize = found.iter().map(|one| one.void).sum();
-        draft.paragraph("lifetimes", values!(watched, tubes, void, runs, broken));
-    }
+    let sum = |of: fn(&Lifetime) -> usize| found.iter().map(of).sum::<usize>();
+    let (void, ended, jams) = (
+        sum(|one| one.void),
+        sum(|one| one.ended[0]),
+        sum(|one| one.ended[1]),
+    );
+    let tubes = found.len();
+    draft.paragraph("lifetimes", values!(watched, tubes, void, ended, jams));
     draft.table("lifetimes", &[], found.iter().map(Lifetime::row));
 }
 

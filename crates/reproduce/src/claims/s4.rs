@@ -105,14 +105,7 @@ fn summary(backward: &[&ForceLine<'_>], forward: &[&ForceLine<'_>]) -> String {
     let elsewhere = if forward.is_empty() {
         String::new()
     } else {
-        PROSE.text(
-            "elsewhere",
-            values!(
-                least = LEAST_BACK_FLOW,
-                clear = CLEAR,
-                rates = rates(forward)
-            ),
-        )
+        PROSE.text("elsewhere", values!(rates = rates(forward)))
     };
     PROSE.text("summary", values!(rates = words.join(", "), elsewhere))
 }

@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped(code) => {
-            tell(format!(
+            say(&format!(
                 "stopped {}; what there is is in {place}\ngo on with: peristalsis run --resume {place}",
                 how_far(run, summary)
             ));

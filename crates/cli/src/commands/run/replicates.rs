@@ -18,7 +18,7 @@ use super::words::{mass_flow, measured};
 use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, not_diverged, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
-use crate::commands::{code_of, counted, print, print_json, significant, tell, warn_besides};
+use crate::commands::{code_of, counted, print, print_json, say, significant, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, name};
@@ -355,7 +355,7 @@ fn conclude(
         let again = format!(
             "stopped with {complete} complete; what there is is in {place}\ngo on with: peristalsis run --resume {place}"
         );
-        tell(arguments.quiet, &again);
+        say(&again);
         return Ok(ExitCode::from(code));
     }
     tell(arguments.quiet, &format!("written to {place}"));

@@ -48,16 +48,13 @@ impl Work {
         mut run: Run,
     ) -> Result<Self, Failure> {
         let trajectory = open_trajectory(arguments, folder.path(), &mut run)?;
-        // Not before: a trajectory that cannot go on leaves the run as it is.
-        if arguments.resume.is_some() && arguments.configuration.length().is_some() {
-            folder.change_length(&run)?;
-        }
-        if arguments.csv {
-            // From here on it is renewed whenever the tables are, also where the run is gone on with after a kill.
-            folder.write_csv(&run)?;
-        }
-        if !folder.has_state() {
-            folder.save_state(&run)?;
+        if let Err(error) = Self::save_first(arguments, &folder, &run) {
+            // A new run that left nothing blocks no folder.
+            let is_one = arguments.resume.is_none() && arguments.seeds.is_none();
+            if is_one && trajectory.is_none() && !folder.has_state() {
+                folder.abandon();
+            }
+            return Err(error.into());
         }
         Ok(Self {
             run,
@@ -65,6 +62,21 @@ impl Work {
             trajectory,
             save_every: arguments.checkpoint_every,
         })
+    }
+
+    fn save_first(arguments: &RunArguments, folder: &RunFolder, run: &Run) -> Result<(), RunError> {
+        // Not before: a trajectory that cannot go on leaves the run as it is.
+        if arguments.resume.is_some() && arguments.configuration.length().is_some() {
+            folder.change_length(run)?;
+        }
+        if arguments.csv {
+            // From here on it is renewed whenever the tables are, also where the run is gone on with after a kill.
+            folder.write_csv(run)?;
+        }
+        if !folder.has_state() {
+            folder.save_state(run)?;
+        }
+        Ok(())
     }
 
     /// Advances to the end or to a signal, and writes what there is.

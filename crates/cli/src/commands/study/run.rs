@@ -7,7 +7,7 @@ use peristalsis_study::{Ending, State, Store, work_on};
 use super::progress::StudyDisplay;
 use super::status::print_status;
 use super::{RunArguments, store_path};
-use crate::commands::{counted, tell};
+use crate::commands::{counted, say, tell};
 use crate::failure::Failure;
 use crate::sources;
 use crate::stop::Stop;
@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped => {
-            tell(format!("stopped, every run is saved; {again}"));
+            say(&format!("stopped, every run is saved; {again}"));
             Ok(stop.exit_code())
         }
     }

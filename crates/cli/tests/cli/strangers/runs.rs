@@ -406,6 +406,26 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
     assert_same_run(&place, ["longer", "many/seed-3"]);
 }
 
+/// What an engineer reads of replicates, where J/Jmax says nothing.
+#[test]
+fn seeds_and_runs_tell_the_mass_flow() {
+    let place = Place::new();
+    let silo = "run --preset silo --set run.duration=100 --seeds 1..2 --out";
+    let flows = ["mass flow", "m/t", "mean of 2 seeds"];
+    place.does(&format!("{silo} silo")).shows(&flows);
+    let json = place.does("runs silo --json").json();
+    assert_eq!(json[0]["mass_flow_unit"], "m/t");
+    let si = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=100";
+    place.does(&format!("run SMALL {si} --out pump"));
+    place.does("runs pump").shows(&["mass flow", "kg/h"]);
+    let summary = place.path("pump/summary.json");
+    let summary: Value = serde_json::from_str(&std::fs::read_to_string(summary).unwrap()).unwrap();
+    let per_second = &summary["si"]["mass_flow_rate_kg_per_s"];
+    let listed = place.does("runs pump --json").json();
+    let per_hour = listed[0]["mass_flow"].as_f64().unwrap();
+    assert!((per_hour / 3600.0 - per_second.as_f64().unwrap()).abs() < 1e-15);
+}
+
 /// COMMAND-LINE, wanted: replicates that are stopped go on, those that had not begun included.
 #[cfg(unix)]
 #[test]
