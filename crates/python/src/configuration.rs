@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyTuple};
 use pythonize::pythonize;
 
-use crate::error::{of_configuration, of_run};
+use crate::error::{ConfigurationError, of_configuration, of_run};
+use crate::heard::heard;
 use crate::helped;
 use crate::value::settings;
 
@@ -461,7 +462,8 @@ impl Configuration {
     /// >>> report["grains"], [warning["key"] for warning in report["warnings"]]
     /// (41, ['tube.rings_per_wave', 'drive.strain_rate', 'tube.rings_per_wave'])
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let estimate = py.detach(|| peristalsis_run::estimate(&self.inner, None));
+        let configuration = self.inner.clone();
+        let estimate = heard(py, move || peristalsis_run::estimate(&configuration, None))?;
         Ok(pythonize(py, &estimate.map_err(of_run)?)?)
     }
 }

@@ -1,5 +1,10 @@
 """Estimators from Python: known answers, any data, and errors that say why."""
 
+import os
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -184,3 +189,21 @@ def test_newtonian_by_hand() -> None:
     assert axial.shape == (2, 2) and axial[0, 0] > axial[1, 0]
     with pytest.raises(ValueError, match="from 0 to 1"):
         newtonian.Newtonian(1.5)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_is_heard_during_a_search() -> None:
+    randomness = np.random.default_rng(5)
+    width = np.repeat(np.linspace(2.4, 2.75, 20), 40)
+    time_to = randomness.gamma(3.0, 1.0 / (2.8 - width))
+    collapse = analysis.Collapse(ising_like([8, 16, 32, 64]), "finite_size")
+    for search in (
+        lambda: collapse.fit([0.2, 0.8, 2.3], [0.1, 0.2, 0.05], starts=300, leave_one_out=True),
+        lambda: analysis.fit_law_to_runs_in_windows("power", width, time_to),
+    ):
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        begin = time.monotonic()
+        with pytest.raises(KeyboardInterrupt):
+            search()
+        assert time.monotonic() - begin < 2.0

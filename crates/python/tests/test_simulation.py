@@ -409,3 +409,13 @@ def test_nonsense_lengths_are_refused(small: Simulation) -> None:
     with pytest.raises(ValueError):
         small.step(-1)
     assert small.steps == 0
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_is_heard_while_a_picture_is_drawn(small: Simulation) -> None:
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        small.render(width=16_000)
+    assert time.monotonic() - begin < 3.0
