@@ -419,3 +419,34 @@ def test_ctrl_c_is_heard_while_a_picture_is_drawn(small: Simulation) -> None:
     with pytest.raises(KeyboardInterrupt):
         small.render(width=16_000)
     assert time.monotonic() - begin < 3.0
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+@pytest.mark.parametrize("preset", ["frictionless-fine", "frictional"])
+def test_a_fork_goes_on_with_threads_of_its_own(preset: str) -> None:
+    from multiprocessing import get_context
+
+    base = Simulation.preset(preset, waves=20)
+    base.run(duration=0.5, threads=2)
+    base.render(width=64)
+    plain = base.copy()
+    plain.run(duration=0.5, threads=2)
+
+    def go_on() -> None:
+        assert base.render(width=64).png == base.render(width=64).png
+        for sim in (base.copy(), base):
+            sim.profile()
+            sim.run(duration=0.25, threads=2)
+            sim.copy().run(duration=0.25, threads=2)
+            sim.run(duration=0.25, threads=2)
+            assert same(sim, plain)
+
+    child = get_context("fork").Process(target=go_on)
+    child.start()
+    child.join(120)
+    if child.is_alive():
+        child.kill()
+    assert child.exitcode == 0
+    base.run(duration=0.5, threads=2)
+    assert same(base, plain)
