@@ -8,6 +8,7 @@ import signal
 import subprocess
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -450,3 +451,52 @@ def test_a_fork_goes_on_with_threads_of_its_own(preset: str) -> None:
     assert child.exitcode == 0
     base.run(duration=0.5, threads=2)
     assert same(base, plain)
+
+
+def test_a_file_takes_the_frames_of_one_writer(small: Simulation, tmp_path: Path) -> None:
+    path = tmp_path / "same.gsd"
+    (tmp_path / "other").symlink_to(tmp_path)
+    two = [Writer(path, every=0.1, overwrite=True), Writer(tmp_path / "other/same.gsd", every=0.2, overwrite=True)]
+    with pytest.raises(ValueError, match="another writer"):
+        small.run(periods=1, writers=two)
+    assert small.steps == 0 and not path.exists()
+    small.add_writer(path, every=0.5)
+    with pytest.raises(ValueError, match="another writer"):
+        small.add_writer(path, every=0.5, overwrite=True)
+    with pytest.raises(ValueError, match="another writer"):
+        small.run(periods=1, writers=two[:1])
+    other = small.copy()
+    seen: list[str] = []
+
+    def meanwhile(_: Simulation) -> None:
+        with pytest.raises(ValueError, match="another writer"):
+            other.run(periods=1, writers=two[:1])
+        seen.append("refused")
+
+    small.step(10, callback=meanwhile, every=10)
+    assert seen == ["refused"]
+    # Once nothing runs, an older file may be lost as before.
+    other.run(periods=1, writers=two[:1])
+    assert two[0].frames == 11
+
+
+def test_doubts_are_told_of_a_run_that_fails() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        fails, stops = (
+            Simulation.preset("frictionless", waves=2, width=1.2, strain_rate=0.2, time_step=step) for step in (0.3, 0.05)
+        )
+
+    def stop(_: Simulation) -> None:
+        raise LookupError
+
+    for sim, error, callback in ((fails, peristalsis.DivergedError, None), (stops, LookupError, stop)):
+        sim._told.clear()
+        with pytest.raises(error), pytest.warns(peristalsis.PeristalsisWarning) as caught:
+            sim.run(periods=10, callback=callback)
+        assert {str(it.message) for it in caught} == {str(it) for it in sim.warnings}
+        assert all(it.filename == __file__ for it in caught)
+    stops._told.clear()
+    with warnings.catch_warnings(), pytest.raises(LookupError):
+        warnings.simplefilter("error")
+        stops.run(periods=1, callback=stop)
