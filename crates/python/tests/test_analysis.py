@@ -207,3 +207,18 @@ def test_ctrl_c_is_heard_during_a_search() -> None:
         with pytest.raises(KeyboardInterrupt):
             search()
         assert time.monotonic() - begin < 2.0
+
+
+def test_masked_entries_are_refused() -> None:
+    masked = np.ma.array(np.arange(32.0), mask=[index == 3 for index in range(32)])
+    for call in (
+        lambda: analysis.mean_with_error(masked),
+        lambda: analysis.ensemble_moments([masked] * 3),
+        lambda: analysis.Survival(np.arange(1.0, 33.0), masked > 2),
+        lambda: analysis.Survival([1.0, 2.0, 3.0]).at(masked),
+        lambda: newtonian.field(newtonian.Newtonian(0.5), masked, 0.0),
+        lambda: newtonian.flow_rate_ratio(masked),
+    ):
+        with pytest.raises(ValueError, match="value 3 is masked"):
+            call()
+    assert analysis.mean_with_error(np.ma.array(np.sin(np.arange(64.0)))).mean < 1

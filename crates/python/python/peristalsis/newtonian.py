@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._core import Newtonian, trapping_threshold
+from ._given import unmasked
 
 __all__ = ["Newtonian", "field", "flow_rate_ratio", "trapping_threshold"]
 
@@ -51,6 +52,7 @@ def flow_rate_ratio(
     >>> float(flow_rate_ratio(0.0))
     1.0
     """
+    unmasked(width)
     widths = np.asarray(width, dtype=np.float64)
     ratios = [Newtonian.from_width(w, radius, pressure).flow_rate_ratio for w in widths.flat]
     return np.array(ratios, dtype=np.float64).reshape(widths.shape)
@@ -83,6 +85,8 @@ def field(
     (2, 2)
     """
     r, x = np.broadcast_arrays(
+    unmasked(radius)
+    unmasked(position)
         np.asarray(radius, dtype=np.float64), np.asarray(position, dtype=np.float64)
     )
     axial, radial, stream = flow.field(np.ascontiguousarray(r).ravel(), np.ascontiguousarray(x).ravel())
