@@ -222,3 +222,13 @@ def test_masked_entries_are_refused() -> None:
         with pytest.raises(ValueError, match="value 3 is masked"):
             call()
     assert analysis.mean_with_error(np.ma.array(np.sin(np.arange(64.0)))).mean < 1
+
+
+def test_newtonian_flow_ends_at_the_wall() -> None:
+    flow = newtonian.Newtonian(0.5, 0.1)
+    x = np.linspace(0, 1, 100)
+    for quantity in newtonian.field(flow, np.outer([0.0, 0.5, 1.0], flow.wall_radius(x)), x):
+        assert np.isfinite(quantity).all()
+    for quantity in newtonian.field(flow, [1.001 * flow.wall_radius(x)], x):
+        assert np.isnan(quantity).all()
+    assert repr(flow) == "Newtonian(amplitude_ratio=0.5, pressure=0.1)"

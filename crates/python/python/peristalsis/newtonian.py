@@ -74,8 +74,9 @@ def field(
     Returns
     -------
     tuple of ndarray
-        Axial velocity [c], radial velocity [c a/lambda] and Stokes' stream function psi [c a^2], of the
-        common shape. In the frame of the wave the flow is steady and follows lines of constant psi: d psi/dr = r (v_z - c).
+        Axial velocity [c], radial velocity [c a/lambda] and Stokes' stream function psi [c a^2], of the common shape; NaN
+        beyond the wall, where there is no fluid. In the frame of the wave the flow is steady and follows lines of constant
+        psi: d psi/dr = r (v_z - c).
 
     Examples
     --------
@@ -84,9 +85,9 @@ def field(
     >>> axial.shape
     (2, 2)
     """
-    r, x = np.broadcast_arrays(
     unmasked(radius)
     unmasked(position)
+    r, x = np.broadcast_arrays(
         np.asarray(radius, dtype=np.float64), np.asarray(position, dtype=np.float64)
     )
     axial, radial, stream = flow.field(np.ascontiguousarray(r).ravel(), np.ascontiguousarray(x).ravel())
