@@ -84,8 +84,9 @@ impl Configuration {
         entries
     }
 
-    /// The value of a dotted key, or the table of that name.
-    fn value(&self, key: &str) -> Option<toml::Value> {
+    /// The value of a dotted key, or the table of that name; none of what is no text.
+    fn value_of(&self, key: &Bound<'_, PyAny>) -> Option<toml::Value> {
+        let key: String = key.extract().ok()?;
         let mut value = toml::Value::Table(self.tables());
         for word in key.split('.') {
             value = value.as_table_mut()?.remove(word)?;
@@ -210,8 +211,12 @@ impl Configuration {
         Self::new(py, None, overrides, Some(&text), "configuration", keywords)
     }
 
-    fn __getitem__<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
-        match self.value(key) {
+    fn __getitem__<'py>(
+        &self,
+        py: Python<'py>,
+        key: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        match self.value_of(key) {
             Some(value) => Ok(pythonize(py, &value)?),
             None => {
                 let module = py.import("peristalsis._keywords")?;
@@ -222,8 +227,7 @@ impl Configuration {
     }
 
     fn __contains__(&self, key: &Bound<'_, PyAny>) -> bool {
-        let key = key.extract::<String>();
-        key.is_ok_and(|key| self.value(&key).is_some())
+        self.value_of(key).is_some()
     }
 
     fn __len__(&self) -> usize {
@@ -312,7 +316,7 @@ impl Configuration {
         key: &str,
         default: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        match self.value(key) {
+        match self.value_of(key) {
             Some(value) => Ok(Some(pythonize(py, &value)?)),
             None => Ok(default),
         }

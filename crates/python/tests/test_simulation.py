@@ -500,3 +500,18 @@ def test_doubts_are_told_of_a_run_that_fails() -> None:
     with warnings.catch_warnings(), pytest.raises(LookupError):
         warnings.simplefilter("error")
         stops.run(periods=1, callback=stop)
+
+
+def test_mappings_are_asked_for_what_is_no_name(small: Simulation) -> None:
+    configuration, table = small.configuration, small.timeseries()
+    assert configuration.get(3) is None and configuration.get(None, 1) == 1 and 3 not in configuration and 3 not in table
+    with pytest.raises(KeyError, match="no key 3"):
+        configuration[3]
+    with pytest.raises(KeyError, match="no column 0; there are time"):
+        table[0]
+    assert table.to_pandas().shape == (0, len(table.keys()))
+
+
+def test_steps_beyond_reach_are_refused(small: Simulation) -> None:
+    with pytest.raises(ValueError, match="steps is 1000000000000 or less"):
+        small.step(10**30)

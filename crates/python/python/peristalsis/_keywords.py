@@ -92,10 +92,10 @@ def _plain(key: str, value: Any) -> Any:
     return value
 
 
-def missing(key: str, keys: Iterable[str]) -> str:
+def missing(key: object, keys: Iterable[str]) -> str:
     """What to say of a dotted key that a configuration does not have."""
     last = {other.rpartition(".")[2]: other for other in keys}
-    near = get_close_matches(key.rpartition(".")[2], last, 1)
+    near = get_close_matches(str(key).rpartition(".")[2], last, 1)
     meant = f"; did you mean {last[near[0]]!r}?" if near else ""
     return f"there is no key {key!r} in this configuration{meant}"
 

@@ -163,7 +163,7 @@ class Simulation(Made):
         Parameters
         ----------
         steps : int
-            Steps, from 0 on.
+            Steps, from 0 to 10^12.
         progress, callback, every, writers, threads
             As of `run`.
 
@@ -193,7 +193,7 @@ class Simulation(Made):
         threads: int | None = None,
     ) -> None:
         """As `step`, but tells no doubts."""
-        steps = whole("steps", steps, 0)
+        steps = whole("steps", steps, 0, int(_MOST_STEPS))
         each = self._run.steps_per_sample if every is None else whole("every", every, 1)
         if not self._running.acquire(blocking=False):
             raise RuntimeError("this simulation is running already")
