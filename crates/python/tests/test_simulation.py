@@ -515,3 +515,15 @@ def test_mappings_are_asked_for_what_is_no_name(small: Simulation) -> None:
 def test_steps_beyond_reach_are_refused(small: Simulation) -> None:
     with pytest.raises(ValueError, match="steps is 1000000000000 or less"):
         small.step(10**30)
+
+
+def test_a_key_that_is_given_twice_is_refused() -> None:
+    def named(*words: str) -> str:
+        return "(?s)" + ".*".join(words)
+
+    with pytest.raises(ConfigurationError, match=named("drive_width", "width", "drive.width", "one of them")):
+        Simulation.preset("frictionless-fine", drive_width=2.5, width=2.6)
+    with pytest.raises(ConfigurationError, match=named(r"drive\['width'\]", "drive.width")):
+        peristalsis.run({"preset": "frictionless-fine", "drive": {"width": 2.9}, "drive.width": 2.8})
+    with pytest.raises(ConfigurationError, match=named("drive.width", "width")):
+        peristalsis.Configuration("frictionless-fine").replace({"drive.width": 2.5}, width=2.5)
