@@ -2,6 +2,7 @@
 
 use std::hash::{Hash, Hasher};
 
+use peristalsis_command::not_of_one_run;
 use peristalsis_configuration::{PRESETS, SourceFile, Sources};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -131,6 +132,11 @@ impl Configuration {
         keywords: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let overrides = settings(&joined(py, overrides, keywords)?)?;
+        if let Some((reason, help)) = text.and_then(|text| not_of_one_run(name, text)) {
+            return Err(ConfigurationError::new_err(format!(
+                "{reason}\n  help: {help}"
+            )));
+        }
         let sources = Sources {
             file: text.map(|text| SourceFile { name, text }),
             preset,
@@ -313,7 +319,7 @@ impl Configuration {
     fn get<'py>(
         &self,
         py: Python<'py>,
-        key: &str,
+        key: &Bound<'py, PyAny>,
         default: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
         match self.value_of(key) {

@@ -527,3 +527,10 @@ def test_a_key_that_is_given_twice_is_refused() -> None:
         peristalsis.run({"preset": "frictionless-fine", "drive": {"width": 2.9}, "drive.width": 2.8})
     with pytest.raises(ConfigurationError, match=named("drive.width", "width")):
         peristalsis.Configuration("frictionless-fine").replace({"drive.width": 2.5}, width=2.5)
+
+
+def test_a_study_is_no_configuration_of_one_run(tmp_path: Path) -> None:
+    file = tmp_path / "study.toml"
+    file.write_text("name = 'many'\npreset = 'frictionless'\n\n[base]\nrun.periods = 1\n")
+    with pytest.raises(ConfigurationError, match="is a study, not the configuration of one run(?s:.*)study run"):
+        Simulation.from_file(file)
