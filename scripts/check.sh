@@ -62,7 +62,7 @@ if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
     cargo build --workspace --locked --lib --tests
     cp -rL crates/python/python "$scratch/python"
     cp target/debug/lib_core.so "$scratch/python/peristalsis/_core.abi3.so"
-    PYTHONPATH=$scratch/python "$scratch/venv/bin/python" scripts/run_snippets.py --only python crates/python/README.md
+    PYTHONPATH=$scratch/python "$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md
 else
     step "skipped: spelling, tables, as pyarrow reads them, and the Python package's page (python3 makes no virtual environment here)"
 fi

@@ -52,6 +52,6 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch/venv"
 "$scratch/venv/bin/pip" install --quiet "$wheel[plot]"
-"$scratch/venv/bin/python" scripts/run_snippets.py --only python crates/python/README.md docs/book/src/guides/collapse.md docs/book/src/guides/python.md
+"$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md docs/book/src/guides/collapse.md docs/book/src/guides/python.md
 
 step "the Python package is well"

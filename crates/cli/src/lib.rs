@@ -14,6 +14,8 @@ mod progress;
 mod sources;
 mod stop;
 
+pub use sources::not_of_one_run;
+
 use std::ffi::OsString;
 use std::process::ExitCode;
 

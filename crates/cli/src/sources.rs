@@ -19,24 +19,10 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
         return Err(Failure::usage(reason, known_presets()));
     }
     let file = name_and_text(arguments)?;
-    if let Some((name, text)) = &file {
-        let (is, command) = if is_a_study(text) {
-            ("a study", format!("study run {name}, or study plan {name}"))
-        } else if is_design(text) {
-            (
-                "a design",
-                format!("design {name} --write FILE, then run FILE"),
-            )
-        } else {
-            ("", String::new())
-        };
-        if !is.is_empty() {
-            let reason = format!("{name} is {is}, not the configuration of one run");
-            return Err(Failure::usage(
-                reason,
-                format!("use: peristalsis {command}"),
-            ));
-        }
+    if let Some((name, text)) = &file
+        && let Some((reason, help)) = not_of_one_run(name, text)
+    {
+        return Err(Failure::usage(reason, help));
     }
     let overrides = arguments.overrides.iter().cloned();
     let overrides: Vec<String> = overrides.chain(arguments.length()).collect();
@@ -45,6 +31,22 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
         preset: arguments.preset.as_deref(),
         overrides: &overrides,
     })?)
+}
+
+/// Of the text of a study or of a design: that it is not the configuration of one run, and what to do with it.
+pub fn not_of_one_run(name: &str, text: &str) -> Option<(String, String)> {
+    let (is, command) = if is_a_study(text) {
+        ("a study", format!("study run {name}, or study plan {name}"))
+    } else if is_design(text) {
+        (
+            "a design",
+            format!("design {name} --write FILE, then run FILE"),
+        )
+    } else {
+        return None;
+    };
+    let reason = format!("{name} is {is}, not the configuration of one run");
+    Some((reason, format!("use: peristalsis {command}")))
 }
 
 /// Name and text of the file that the arguments name, if they name one.

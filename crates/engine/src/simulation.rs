@@ -176,6 +176,9 @@ impl Simulation {
 
     /// Advances without a look at open ends.
     fn advance_closed(&mut self, steps: u64) -> Result<(), EngineError> {
+        if !self.scratch.threads.are_here() {
+            self.compute_with(self.scratch.instructions, self.scratch.threads.number())?;
+        }
         let Self {
             bodies,
             course,
@@ -246,7 +249,7 @@ impl Simulation {
         instructions: Instructions,
         threads: usize,
     ) -> Result<(), EngineError> {
-        if threads != self.scratch.threads.number() {
+        if threads != self.scratch.threads.number() || !self.scratch.threads.are_here() {
             self.scratch.threads = Threads::new(threads)?;
         }
         self.scratch.instructions = instructions;
@@ -389,7 +392,8 @@ impl Simulation {
         add: impl Fn(&mut S, WallContact) + Sync,
     ) -> Vec<S> {
         if let (0, Memory::Smooth(_)) = (self.wall().mobile_spheres(), &self.memory) {
-            let threads = &self.scratch.threads;
+            let (alone, threads) = (Threads::default(), &self.scratch.threads);
+            let threads = if threads.are_here() { threads } else { &alone };
             return with_normal_law!(self.parameters().contact.normal, law => {
                 add_up_smooth_contacts(law, self.bodies(), self.wall(), threads, begin, add)
             });

@@ -13,6 +13,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{AnalysisError, of_analysis};
+use crate::heard::heard;
 
 pub(crate) type Answer = PyResult<Py<PyAny>>;
 
@@ -75,9 +76,11 @@ impl<T: DeserializeOwned> FromPyObject<'_, '_> for Named<T> {
 }
 
 /// Computes without the interpreter and hands the answer over.
-fn answer<T: Serialize + Send>(work: impl FnOnce() -> Result<T, analysis::Error> + Send) -> Answer {
+fn answer<T: Serialize + Send + 'static>(
+    work: impl FnOnce() -> Result<T, analysis::Error> + Send + 'static,
+) -> Answer {
     Python::attach(|py| {
-        let value = py.detach(work).map_err(of_analysis)?;
+        let value = heard(py, work)?.map_err(of_analysis)?;
         Ok(pythonize(py, &value)?.unbind())
     })
 }
@@ -93,22 +96,22 @@ fn after_end(held: Option<usize>) -> AfterEnd {
 
 #[pyfunction]
 pub(crate) fn mean_with_error(series: Column) -> Answer {
-    answer(|| analysis::mean_with_error(&series))
+    answer(move || analysis::mean_with_error(&series))
 }
 
 #[pyfunction]
 pub(crate) fn autocorrelation_time(series: Column) -> Answer {
-    answer(|| analysis::autocorrelation_time(&series))
+    answer(move || analysis::autocorrelation_time(&series))
 }
 
 #[pyfunction]
 pub(crate) fn stationary_mean(series: Column) -> Answer {
-    answer(|| analysis::stationary_mean(&series))
+    answer(move || analysis::stationary_mean(&series))
 }
 
 #[pyfunction]
 pub(crate) fn stationarity(series: Column) -> Answer {
-    answer(|| analysis::stationarity(&series))
+    answer(move || analysis::stationarity(&series))
 }
 
 /// Time of the transition in a series of period averages, and whether there was one.
@@ -125,27 +128,27 @@ pub(crate) fn transition_time(
 
 #[pyfunction]
 pub(crate) fn survival(runs: Runs) -> Answer {
-    answer(|| Survival::new(&runs.0))
+    answer(move || Survival::new(&runs.0))
 }
 
 #[pyfunction]
 pub(crate) fn survival_median(runs: Runs) -> Answer {
-    answer(|| Survival::new(&runs.0)?.median())
+    answer(move || Survival::new(&runs.0)?.median())
 }
 
 #[pyfunction]
 pub(crate) fn restricted_moments(runs: Runs, horizon: f64) -> Answer {
-    answer(|| analysis::restricted_moments(&runs.0, horizon))
+    answer(move || analysis::restricted_moments(&runs.0, horizon))
 }
 
 #[pyfunction]
 pub(crate) fn fit_lifetime(family: Named<Family>, runs: Runs) -> Answer {
-    answer(|| analysis::fit_lifetime(family.0, &runs.0))
+    answer(move || analysis::fit_lifetime(family.0, &runs.0))
 }
 
 #[pyfunction]
 pub(crate) fn fit_shifted_exponential(runs: Runs) -> Answer {
-    answer(|| analysis::fit_shifted_exponential(&runs.0))
+    answer(move || analysis::fit_shifted_exponential(&runs.0))
 }
 
 #[pyfunction]
@@ -157,7 +160,7 @@ pub(crate) fn fit_law(
     error: Column,
     known: Option<(f64, f64)>,
 ) -> Answer {
-    answer(|| analysis::fit_law(law.0, &width, &value, &error, known.map(uncertain)))
+    answer(move || analysis::fit_law(law.0, &width, &value, &error, known.map(uncertain)))
 }
 
 #[pyfunction]
@@ -169,13 +172,15 @@ pub(crate) fn fit_law_to_nearest(
     error: Column,
     known: Option<(f64, f64)>,
 ) -> Answer {
-    answer(|| analysis::fit_law_to_nearest(law.0, &width, &value, &error, known.map(uncertain)))
+    answer(move || {
+        analysis::fit_law_to_nearest(law.0, &width, &value, &error, known.map(uncertain))
+    })
 }
 
 #[pyfunction]
 pub(crate) fn fit_law_to_runs(law: Named<Law>, family: Named<Family>, table: RunTable) -> Answer {
     let (width, runs) = table;
-    answer(|| analysis::fit_law_to_runs(law.0, family.0, &width, &runs.0))
+    answer(move || analysis::fit_law_to_runs(law.0, family.0, &width, &runs.0))
 }
 
 #[pyfunction]
@@ -185,7 +190,7 @@ pub(crate) fn fit_law_to_runs_in_windows(
     table: RunTable,
 ) -> Answer {
     let (width, runs) = table;
-    answer(|| analysis::fit_law_to_runs_in_windows(law.0, family.0, &width, &runs.0))
+    answer(move || analysis::fit_law_to_runs_in_windows(law.0, family.0, &width, &runs.0))
 }
 
 #[pyfunction]
@@ -195,90 +200,92 @@ pub(crate) fn compare_laws(
     table: RunTable,
 ) -> Answer {
     let (width, runs) = table;
-    answer(|| analysis::compare_laws(&laws.0, family.0, &width, &runs.0))
+    answer(move || analysis::compare_laws(&laws.0, family.0, &width, &runs.0))
 }
 
 #[pyfunction]
 pub(crate) fn compare_laws_with_scatter(laws: Named<Vec<Law>>, table: RunTable) -> Answer {
-    answer(|| analysis::compare_laws_with_scatter(&laws.0, &table.0, &table.1.0))
+    answer(move || analysis::compare_laws_with_scatter(&laws.0, &table.0, &table.1.0))
 }
 
 #[pyfunction]
 pub(crate) fn fit_law_with_scatter(table: RunTable) -> Answer {
-    answer(|| analysis::fit_law_with_scatter(&table.0, &table.1.0))
+    answer(move || analysis::fit_law_with_scatter(&table.0, &table.1.0))
 }
 
 #[pyfunction]
 pub(crate) fn ensembles_by_width(family: Named<Family>, table: RunTable) -> Answer {
-    answer(|| analysis::ensembles_by_width(family.0, &table.0, &table.1.0))
+    answer(move || analysis::ensembles_by_width(family.0, &table.0, &table.1.0))
 }
 
 #[pyfunction]
 pub(crate) fn fraction_crossing(runs: Outcomes) -> Answer {
-    answer(|| analysis::fraction_crossing(&runs.0, &runs.1))
+    answer(move || analysis::fraction_crossing(&runs.0, &runs.1))
 }
 
 #[pyfunction]
 pub(crate) fn hysteresis(rest: Outcomes, jammed: Outcomes) -> Answer {
-    answer(|| analysis::hysteresis((&rest.0, &rest.1), (&jammed.0, &jammed.1)))
+    answer(move || analysis::hysteresis((&rest.0, &rest.1), (&jammed.0, &jammed.1)))
 }
 
 /// Columns of width, value and error of either branch.
 #[pyfunction]
 pub(crate) fn jump_height(upper: [Column; 3], lower: [Column; 3], critical: (f64, f64)) -> Answer {
-    let [upper, lower] = [&upper, &lower].map(|branch| branch.each_ref().map(Column::deref));
-    answer(|| analysis::jump_height(upper, lower, uncertain(critical)))
+    answer(move || {
+        let [upper, lower] = [&upper, &lower].map(|branch| branch.each_ref().map(Column::deref));
+        analysis::jump_height(upper, lower, uncertain(critical))
+    })
 }
 
 #[pyfunction]
 pub(crate) fn dip_test(values: Column, resamples: usize, seed: u64) -> Answer {
-    answer(|| analysis::dip_test(&values, Bootstrap::new(resamples, seed)))
+    answer(move || analysis::dip_test(&values, Bootstrap::new(resamples, seed)))
 }
 
 #[pyfunction]
 pub(crate) fn two_peaks(values: Column) -> Answer {
-    answer(|| analysis::two_peaks(&values))
+    answer(move || analysis::two_peaks(&values))
 }
 
 #[pyfunction]
 pub(crate) fn fit_inverse_line(width: Column, value: Column, error: Column) -> Answer {
-    answer(|| analysis::fit_inverse_line(&width, &value, &error))
+    answer(move || analysis::fit_inverse_line(&width, &value, &error))
 }
 
 #[pyfunction]
 pub(crate) fn fit_inverse_parabola(width: Column, value: Column, error: Column) -> Answer {
-    answer(|| analysis::fit_inverse_parabola(&width, &value, &error))
+    answer(move || analysis::fit_inverse_parabola(&width, &value, &error))
 }
 
 #[pyfunction]
 pub(crate) fn fit_line_to_scatter(x: Column, y: Column, error: Column) -> Answer {
-    answer(|| analysis::fit_line_to_scatter(&x, &y, &error))
+    answer(move || analysis::fit_line_to_scatter(&x, &y, &error))
 }
 
 #[pyfunction]
 pub(crate) fn fit_line(x: Column, y: Column, error: Column) -> Answer {
-    answer(|| analysis::fit_line(&x, &y, &error))
+    answer(move || analysis::fit_line(&x, &y, &error))
 }
 
 #[pyfunction]
 pub(crate) fn fit_parabola(x: Column, y: Column, error: Column) -> Answer {
-    answer(|| analysis::fit_parabola(&x, &y, &error))
+    answer(move || analysis::fit_parabola(&x, &y, &error))
 }
 
 #[pyfunction]
 pub(crate) fn power_exponent(x: Column, y: Column, error: Column) -> Answer {
-    answer(|| analysis::power_exponent(&x, &y, &error))
+    answer(move || analysis::power_exponent(&x, &y, &error))
 }
 
 #[pyfunction]
 pub(crate) fn ensemble_moments(replicates: Vec<Column>) -> Answer {
-    answer(|| analysis::ensemble_moments(&replicates))
+    answer(move || analysis::ensemble_moments(&replicates))
 }
 
 #[pyfunction]
 #[pyo3(signature = (runs, held=None))]
 pub(crate) fn second_moment(runs: Vec<Column>, held: Option<usize>) -> Answer {
-    answer(|| analysis::second_moment(&runs, after_end(held)))
+    answer(move || analysis::second_moment(&runs, after_end(held)))
 }
 
 #[pyfunction]
@@ -289,5 +296,7 @@ pub(crate) fn second_moment_peak(
     resamples: usize,
     seed: u64,
 ) -> Answer {
-    answer(|| analysis::second_moment_peak(&runs, after_end(held), Bootstrap::new(resamples, seed)))
+    answer(move || {
+        analysis::second_moment_peak(&runs, after_end(held), Bootstrap::new(resamples, seed))
+    })
 }

@@ -3,7 +3,9 @@
 use std::cell::RefCell;
 
 use peristalsis_analysis as analysis;
-use peristalsis_analysis::{Collapse, CollapseEstimate, Curve, CurvePoint, Scaling, Uncertain};
+use peristalsis_analysis::{
+    Collapse, CollapseEstimate, Curve, CurvePoint, Scaling, Transform, Uncertain,
+};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pythonize::pythonize;
@@ -11,6 +13,7 @@ use serde::Serialize;
 
 use crate::analysis::{Answer, Column, Named};
 use crate::error::{AnalysisError, of_analysis};
+use crate::heard::heard;
 
 /// A curve, from its parameter and its columns (x, y, error).
 pub(crate) struct Measured(Curve);
@@ -155,24 +158,41 @@ impl Search {
 }
 
 /// Curves, their scaling and how to search, as the analysis takes them, and what it makes of them.
-fn searched<T: Serialize>(
+fn searched<T: Serialize + Send + 'static>(
     py: Python<'_>,
     measured: Vec<Measured>,
     scheme: Scheme<'_>,
-    search: &Search,
-    work: impl FnOnce(&Collapse<'_>) -> Result<T, analysis::Error>,
+    search: Search,
+    work: impl FnOnce(&Collapse<'_>, &Search) -> Result<T, analysis::Error> + Send + 'static,
 ) -> Answer {
     let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
     scheme.check(search.start.len(), curves.len())?;
     scheme.check(search.steps.len(), curves.len())?;
-    let outcome = work(&Collapse {
-        curves: &curves,
-        transform: &|parameters, curve, parameter, point| {
-            scheme.apply(parameters, curve, parameter, point)
-        },
-        least_overlap: search.least_overlap,
-    });
-    Ok(pythonize(py, &scheme.outcome(outcome)?)?.unbind())
+    let work = move |transform: &Transform<'_>| {
+        let collapse = Collapse {
+            curves: &curves,
+            transform,
+            least_overlap: search.least_overlap,
+        };
+        work(&collapse, &search)
+    };
+    let found = match scheme {
+        Scheme::Named(scaling) => {
+            let outcome = heard(py, move || {
+                work(&|parameters, curve, parameter, point| {
+                    scaling.apply(parameters, curve, parameter, point)
+                })
+            });
+            outcome?.map_err(of_analysis)?
+        }
+        Scheme::Called { .. } => {
+            let outcome = work(&|parameters, curve, parameter, point| {
+                scheme.apply(parameters, curve, parameter, point)
+            });
+            scheme.outcome(outcome)?
+        }
+    };
+    Ok(pythonize(py, &found)?.unbind())
 }
 
 /// Best parameters with errors: (estimate, parameters with one curve left out in turn).
@@ -183,7 +203,7 @@ pub(crate) fn fit_collapse<'py>(
     scheme: Scheme<'py>,
     search: Search,
 ) -> Answer {
-    searched(py, measured, scheme, &search, |collapse| {
+    searched(py, measured, scheme, search, |collapse, search| {
         let (start, steps) = (&search.start, &search.steps);
         let (starts, seed, correction) = (search.starts, search.seed, search.correction);
         let known = search.known();
@@ -209,7 +229,7 @@ pub(crate) fn test_collapse<'py>(
     found: Named<CollapseEstimate>,
     claimed: Vec<(usize, f64)>,
 ) -> Answer {
-    searched(py, measured, scheme, &search, |collapse| {
+    searched(py, measured, scheme, search, move |collapse, search| {
         collapse.joint_test(&search.known(), &found.0, &search.steps, &claimed)
     })
 }

@@ -2,13 +2,15 @@
 
 use std::hash::{Hash, Hasher};
 
+use peristalsis_command::not_of_one_run;
 use peristalsis_configuration::{PRESETS, SourceFile, Sources};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyTuple};
 use pythonize::pythonize;
 
-use crate::error::{of_configuration, of_run};
+use crate::error::{ConfigurationError, of_configuration, of_run};
+use crate::heard::heard;
 use crate::helped;
 use crate::value::settings;
 
@@ -83,8 +85,9 @@ impl Configuration {
         entries
     }
 
-    /// The value of a dotted key, or the table of that name.
-    fn value(&self, key: &str) -> Option<toml::Value> {
+    /// The value of a dotted key, or the table of that name; none of what is no text.
+    fn value_of(&self, key: &Bound<'_, PyAny>) -> Option<toml::Value> {
+        let key: String = key.extract().ok()?;
         let mut value = toml::Value::Table(self.tables());
         for word in key.split('.') {
             value = value.as_table_mut()?.remove(word)?;
@@ -129,6 +132,11 @@ impl Configuration {
         keywords: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let overrides = settings(&joined(py, overrides, keywords)?)?;
+        if let Some((reason, help)) = text.and_then(|text| not_of_one_run(name, text)) {
+            return Err(ConfigurationError::new_err(format!(
+                "{reason}\n  help: {help}"
+            )));
+        }
         let sources = Sources {
             file: text.map(|text| SourceFile { name, text }),
             preset,
@@ -209,8 +217,12 @@ impl Configuration {
         Self::new(py, None, overrides, Some(&text), "configuration", keywords)
     }
 
-    fn __getitem__<'py>(&self, py: Python<'py>, key: &str) -> PyResult<Bound<'py, PyAny>> {
-        match self.value(key) {
+    fn __getitem__<'py>(
+        &self,
+        py: Python<'py>,
+        key: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        match self.value_of(key) {
             Some(value) => Ok(pythonize(py, &value)?),
             None => {
                 let module = py.import("peristalsis._keywords")?;
@@ -221,8 +233,7 @@ impl Configuration {
     }
 
     fn __contains__(&self, key: &Bound<'_, PyAny>) -> bool {
-        let key = key.extract::<String>();
-        key.is_ok_and(|key| self.value(&key).is_some())
+        self.value_of(key).is_some()
     }
 
     fn __len__(&self) -> usize {
@@ -308,10 +319,10 @@ impl Configuration {
     fn get<'py>(
         &self,
         py: Python<'py>,
-        key: &str,
+        key: &Bound<'py, PyAny>,
         default: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Option<Bound<'py, PyAny>>> {
-        match self.value(key) {
+        match self.value_of(key) {
             Some(value) => Ok(Some(pythonize(py, &value)?)),
             None => Ok(default),
         }
@@ -461,7 +472,8 @@ impl Configuration {
     /// >>> report["grains"], [warning["key"] for warning in report["warnings"]]
     /// (41, ['tube.rings_per_wave', 'drive.strain_rate', 'tube.rings_per_wave'])
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let estimate = py.detach(|| peristalsis_run::estimate(&self.inner, None));
+        let configuration = self.inner.clone();
+        let estimate = heard(py, move || peristalsis_run::estimate(&configuration, None))?;
         Ok(pythonize(py, &estimate.map_err(of_run)?)?)
     }
 }

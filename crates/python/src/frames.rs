@@ -8,11 +8,13 @@ use peristalsis_run::{
     Aspect, Drawing, FrameFile, FrameFormat, FrameSource, Look, PictureScene, Place, RunError,
     Writing, space_time,
 };
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use rayon::ThreadPoolBuilder;
 
 use crate::error::of_run;
+use crate::heard::heard;
 use crate::run::Run;
 
 /// Whether a format is known by the ending of a file's name; refuses it where none is.
@@ -140,20 +142,26 @@ pub(crate) fn render<'py>(
             ..Look::default()
         }
     };
-    let bytes = run.look(py, |run| {
-        let drawing = match view.as_str() {
-            "space-time" => space_time(run)?,
-            _ => still(run, look(0.5 * run.simulation().wall().length()))?,
-        };
-        encoded(&drawing, vector)
+    let draw = run.look(py, |run| match view.as_str() {
+        "space-time" => space_time(run).map(|drawing| Box::new(move || Ok(drawing)) as Draw),
+        _ => still(run, look(0.5 * run.simulation().wall().length())),
     });
+    let draw = draw.map_err(of_run)?;
+    // Threads of this picture alone: those that all share do not come along where the process forks.
+    let threads = ThreadPoolBuilder::new().build();
+    let threads = threads.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+    let bytes = heard(py, move || threads.install(|| encoded(&draw()?, vector)))?;
     Ok(PyBytes::new(py, &bytes.map_err(of_run)?))
 }
 
-fn still(run: &peristalsis_run::Run, look: Look) -> Result<Drawing, RunError> {
+/// What is left to do of a picture once the run has been looked at.
+type Draw = Box<dyn FnOnce() -> Result<Drawing, RunError> + Send>;
+
+fn still(run: &peristalsis_run::Run, look: Look) -> Result<Draw, RunError> {
     let frame = FrameSource::now(run, look.needs_contacts());
     let samples = [frame];
-    PictureScene::new(run, look, &samples)?.draw(&samples[0])
+    let scene = PictureScene::new(run, look, &samples)?;
+    Ok(Box::new(move || scene.draw(&samples[0])))
 }
 
 fn encoded(drawing: &Drawing, vector: bool) -> Result<Vec<u8>, RunError> {

@@ -10,6 +10,7 @@ mod command;
 mod configuration;
 mod error;
 mod frames;
+mod heard;
 mod load;
 mod newtonian;
 mod onlooker;

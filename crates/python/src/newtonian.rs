@@ -310,7 +310,8 @@ impl Newtonian {
     /// Returns
     /// -------
     /// list of ndarray
-    ///     Axial velocity [c], radial velocity [c a/lambda] and stream function [c a^2], each of shape (n,).
+    ///     Axial velocity [c], radial velocity [c a/lambda] and stream function [c a^2], each of shape (n,); NaN beyond the
+    ///     wall.
     ///
     /// Examples
     /// --------
@@ -327,7 +328,11 @@ impl Newtonian {
     ) -> PyResult<[Bound<'py, PyArray1<f64>>; 3]> {
         let (radius, position) = (radius.as_slice()?, position.as_slice()?);
         let each = |value: &dyn Fn(f64, f64) -> f64| {
-            let values = radius.iter().zip(position).map(|(&r, &x)| value(r, x));
+            let values = radius.iter().zip(position).map(|(&r, &x)| {
+                // Up to rounding the wall itself is within.
+                let is_within = r.abs() <= self.flow.wall_radius(x) * (1.0 + 4.0 * f64::EPSILON);
+                if is_within { value(r, x) } else { f64::NAN }
+            });
             PyArray1::from_iter(py, values)
         };
         Ok([
@@ -335,6 +340,11 @@ impl Newtonian {
             each(&|r, x| self.flow.radial_velocity(r, x)),
             each(&|r, x| self.flow.stream_function(r, x)),
         ])
+    }
+
+    fn __repr__(&self) -> String {
+        let (amplitude_ratio, pressure) = (self.amplitude_ratio(), self.pressure());
+        format!("Newtonian(amplitude_ratio={amplitude_ratio:?}, pressure={pressure:?})")
     }
 }
 

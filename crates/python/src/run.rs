@@ -20,10 +20,8 @@ use pythonize::pythonize;
 
 use crate::configuration::Configuration;
 use crate::error::{ConfigurationError, DivergedError, in_words, of_run};
+use crate::heard::EACH_LOOK;
 use crate::table::{Table, read_only};
-
-/// Time between two looks for a signal while grains are packed.
-const EACH_LOOK: Duration = Duration::from_millis(50);
 
 /// A simulation with what was measured of it, behind a lock that is fair: who looks at it while another thread advances
 /// it sees a whole step, and soon.

@@ -21,9 +21,10 @@ use crate::helped;
 /// Columns of equal length with their units; it does not change.
 ///
 /// As a data frame does, it iterates over the names of its columns and is as long as it has rows; ``dict(table)`` is a
-/// dictionary of arrays. ``pandas.DataFrame(table)`` works with any pandas from 2 on, and by Arrow's PyCapsule
-/// interface ``pyarrow.table(table)``, ``polars.DataFrame(table)`` and DuckDB take it without a copy. It can be
-/// pickled and compared. A number that is missing is NaN in NumPy and pandas, null in Arrow and polars.
+/// dictionary of arrays. ``pandas.DataFrame(table)`` works with any pandas from 2 on (of a table without rows it makes a frame
+/// without columns; `to_pandas` keeps them), and by Arrow's PyCapsule interface ``pyarrow.table(table)``,
+/// ``polars.DataFrame(table)`` and DuckDB take it without a copy. It can be pickled and compared. A number that is missing
+/// is NaN in NumPy and pandas, null in Arrow and polars.
 ///
 /// Examples
 /// --------
@@ -161,8 +162,9 @@ impl Table {
         self.batch.num_rows()
     }
 
-    fn __contains__(&self, name: &str) -> bool {
-        self.batch.column_by_name(name).is_some()
+    fn __contains__(&self, name: &Bound<'_, PyAny>) -> bool {
+        let name = name.extract::<String>();
+        name.is_ok_and(|name| self.batch.column_by_name(&name).is_some())
     }
 
     /// Names of the columns.
@@ -211,10 +213,7 @@ impl Table {
     /// True
     fn values<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
         let names = self.column_names();
-        names
-            .iter()
-            .map(|name| self.__getitem__(py, name))
-            .collect()
+        names.iter().map(|name| self.column(py, name)).collect()
     }
 
     /// The columns with their names.
@@ -231,7 +230,7 @@ impl Table {
     /// True
     fn items<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
         let names = self.column_names().into_iter();
-        let items = names.map(|name| self.__getitem__(py, &name).map(|column| (name, column)));
+        let items = names.map(|name| self.column(py, &name).map(|column| (name, column)));
         items.collect()
     }
 
@@ -323,27 +322,15 @@ impl Table {
     }
 
     /// A column as a new NumPy array (numbers; NaN where one is missing) or list.
-    fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let column = self.batch.column_by_name(name).ok_or_else(|| {
-            let known = self.column_names().join(", ");
-            PyKeyError::new_err(format!("there is no column {name:?}; there are {known}"))
-        })?;
-        let column = column.as_any();
-        if let Some(reals) = column.downcast_ref::<Float64Array>() {
-            return Ok(PyArray1::from_slice(py, reals.values()).into_any());
+    fn __getitem__<'py>(
+        &self,
+        py: Python<'py>,
+        name: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        match name.extract::<String>() {
+            Ok(name) => self.column(py, &name),
+            Err(_) => Err(self.no_column(&name.repr()?.to_string_lossy())),
         }
-        if let Some(integers) = column.downcast_ref::<Int64Array>() {
-            return Ok(PyArray1::from_slice(py, integers.values()).into_any());
-        }
-        if let Some(truths) = column.downcast_ref::<BooleanArray>() {
-            let truths: Vec<bool> = truths.values().iter().collect();
-            return Ok(PyArray1::from_vec(py, truths).into_any());
-        }
-        let texts: Vec<Option<String>> = column
-            .downcast_ref::<StringArray>()
-            .map(|texts| texts.iter().map(|text| text.map(str::to_owned)).collect())
-            .unwrap_or_default();
-        Ok(texts.into_pyobject(py)?.into_any())
     }
 
     /// Names of the columns.
@@ -408,6 +395,32 @@ impl Table {
 }
 
 impl Table {
+    fn no_column(&self, name: &str) -> PyErr {
+        let known = self.column_names().join(", ");
+        PyKeyError::new_err(format!("there is no column {name}; there are {known}"))
+    }
+
+    fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let column = self.batch.column_by_name(name);
+        let column = column.ok_or_else(|| self.no_column(&format!("{name:?}")))?;
+        let column = column.as_any();
+        if let Some(reals) = column.downcast_ref::<Float64Array>() {
+            return Ok(PyArray1::from_slice(py, reals.values()).into_any());
+        }
+        if let Some(integers) = column.downcast_ref::<Int64Array>() {
+            return Ok(PyArray1::from_slice(py, integers.values()).into_any());
+        }
+        if let Some(truths) = column.downcast_ref::<BooleanArray>() {
+            let truths: Vec<bool> = truths.values().iter().collect();
+            return Ok(PyArray1::from_vec(py, truths).into_any());
+        }
+        let texts: Vec<Option<String>> = column
+            .downcast_ref::<StringArray>()
+            .map(|texts| texts.iter().map(|text| text.map(str::to_owned)).collect())
+            .unwrap_or_default();
+        Ok(texts.into_pyobject(py)?.into_any())
+    }
+
     fn about<'py>(&self, py: Python<'py>, what: &str) -> PyResult<Bound<'py, PyDict>> {
         let schema = self.batch.schema();
         let fields = schema.fields().iter();

@@ -1,5 +1,10 @@
 """Estimators from Python: known answers, any data, and errors that say why."""
 
+import os
+import signal
+import threading
+import time
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -184,3 +189,46 @@ def test_newtonian_by_hand() -> None:
     assert axial.shape == (2, 2) and axial[0, 0] > axial[1, 0]
     with pytest.raises(ValueError, match="from 0 to 1"):
         newtonian.Newtonian(1.5)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_is_heard_during_a_search() -> None:
+    randomness = np.random.default_rng(5)
+    width = np.repeat(np.linspace(2.4, 2.75, 20), 40)
+    time_to = randomness.gamma(3.0, 1.0 / (2.8 - width))
+    collapse = analysis.Collapse(ising_like([8, 16, 32, 64]), "finite_size")
+    for search in (
+        lambda: collapse.fit([0.2, 0.8, 2.3], [0.1, 0.2, 0.05], starts=300, leave_one_out=True),
+        lambda: analysis.fit_law_to_runs_in_windows("power", width, time_to),
+    ):
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        begin = time.monotonic()
+        with pytest.raises(KeyboardInterrupt):
+            search()
+        assert time.monotonic() - begin < 2.0
+
+
+def test_masked_entries_are_refused() -> None:
+    masked = np.ma.array(np.arange(32.0), mask=[index == 3 for index in range(32)])
+    for call in (
+        lambda: analysis.mean_with_error(masked),
+        lambda: analysis.ensemble_moments([masked] * 3),
+        lambda: analysis.Survival(np.arange(1.0, 33.0), masked > 2),
+        lambda: analysis.Survival([1.0, 2.0, 3.0]).at(masked),
+        lambda: newtonian.field(newtonian.Newtonian(0.5), masked, 0.0),
+        lambda: newtonian.flow_rate_ratio(masked),
+    ):
+        with pytest.raises(ValueError, match="value 3 is masked"):
+            call()
+    assert analysis.mean_with_error(np.ma.array(np.sin(np.arange(64.0)))).mean < 1
+
+
+def test_newtonian_flow_ends_at_the_wall() -> None:
+    flow = newtonian.Newtonian(0.5, 0.1)
+    x = np.linspace(0, 1, 100)
+    for quantity in newtonian.field(flow, np.outer([0.0, 0.5, 1.0], flow.wall_radius(x)), x):
+        assert np.isfinite(quantity).all()
+    for quantity in newtonian.field(flow, [1.001 * flow.wall_radius(x)], x):
+        assert np.isnan(quantity).all()
+    assert repr(flow) == "Newtonian(amplitude_ratio=0.5, pressure=0.1)"

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -409,3 +410,127 @@ def test_nonsense_lengths_are_refused(small: Simulation) -> None:
     with pytest.raises(ValueError):
         small.step(-1)
     assert small.steps == 0
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_is_heard_while_a_picture_is_drawn(small: Simulation) -> None:
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        small.render(width=16_000)
+    assert time.monotonic() - begin < 3.0
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+@pytest.mark.parametrize("preset", ["frictionless-fine", "frictional"])
+def test_a_fork_goes_on_with_threads_of_its_own(preset: str) -> None:
+    from multiprocessing import get_context
+
+    base = Simulation.preset(preset, waves=20)
+    base.run(duration=0.5, threads=2)
+    base.render(width=64)
+    plain = base.copy()
+    plain.run(duration=0.5, threads=2)
+
+    def go_on() -> None:
+        assert base.render(width=64).png == base.render(width=64).png
+        for sim in (base.copy(), base):
+            sim.profile()
+            sim.run(duration=0.25, threads=2)
+            sim.copy().run(duration=0.25, threads=2)
+            sim.run(duration=0.25, threads=2)
+            assert same(sim, plain)
+
+    child = get_context("fork").Process(target=go_on)
+    child.start()
+    child.join(120)
+    if child.is_alive():
+        child.kill()
+    assert child.exitcode == 0
+    base.run(duration=0.5, threads=2)
+    assert same(base, plain)
+
+
+def test_a_file_takes_the_frames_of_one_writer(small: Simulation, tmp_path: Path) -> None:
+    path = tmp_path / "same.gsd"
+    (tmp_path / "other").symlink_to(tmp_path)
+    two = [Writer(path, every=0.1, overwrite=True), Writer(tmp_path / "other/same.gsd", every=0.2, overwrite=True)]
+    with pytest.raises(ValueError, match="another writer"):
+        small.run(periods=1, writers=two)
+    assert small.steps == 0 and not path.exists()
+    small.add_writer(path, every=0.5)
+    with pytest.raises(ValueError, match="another writer"):
+        small.add_writer(path, every=0.5, overwrite=True)
+    with pytest.raises(ValueError, match="another writer"):
+        small.run(periods=1, writers=two[:1])
+    other = small.copy()
+    seen: list[str] = []
+
+    def meanwhile(_: Simulation) -> None:
+        with pytest.raises(ValueError, match="another writer"):
+            other.run(periods=1, writers=two[:1])
+        seen.append("refused")
+
+    small.step(10, callback=meanwhile, every=10)
+    assert seen == ["refused"]
+    # Once nothing runs, an older file may be lost as before.
+    other.run(periods=1, writers=two[:1])
+    assert two[0].frames == 11
+
+
+def test_doubts_are_told_of_a_run_that_fails() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        fails, stops = (
+            Simulation.preset("frictionless", waves=2, width=1.2, strain_rate=0.2, time_step=step) for step in (0.3, 0.05)
+        )
+
+    def stop(_: Simulation) -> None:
+        raise LookupError
+
+    for sim, error, callback in ((fails, peristalsis.DivergedError, None), (stops, LookupError, stop)):
+        sim._told.clear()
+        with pytest.raises(error), pytest.warns(peristalsis.PeristalsisWarning) as caught:
+            sim.run(periods=10, callback=callback)
+        assert {str(it.message) for it in caught} == {str(it) for it in sim.warnings}
+        assert all(it.filename == __file__ for it in caught)
+    stops._told.clear()
+    with warnings.catch_warnings(), pytest.raises(LookupError):
+        warnings.simplefilter("error")
+        stops.run(periods=1, callback=stop)
+
+
+def test_mappings_are_asked_for_what_is_no_name(small: Simulation) -> None:
+    configuration, table = small.configuration, small.timeseries()
+    assert configuration.get(3) is None and configuration.get(None, 1) == 1 and 3 not in configuration and 3 not in table
+    with pytest.raises(KeyError, match="no key 3"):
+        configuration[3]
+    with pytest.raises(KeyError, match="no column 0; there are time"):
+        table[0]
+    assert table.to_pandas().shape == (0, len(table.keys()))
+
+
+def test_steps_beyond_reach_are_refused(small: Simulation) -> None:
+    with pytest.raises(ValueError, match="steps is 1000000000000 or less"):
+        small.step(10**30)
+
+
+def test_a_key_that_is_given_twice_is_refused() -> None:
+    def named(*words: str) -> str:
+        return "(?s)" + ".*".join(words)
+
+    with pytest.raises(ConfigurationError, match=named("drive_width", "width", "drive.width", "one of them")):
+        Simulation.preset("frictionless-fine", drive_width=2.5, width=2.6)
+    with pytest.raises(ConfigurationError, match=named(r"drive\['width'\]", "drive.width")):
+        peristalsis.run({"preset": "frictionless-fine", "drive": {"width": 2.9}, "drive.width": 2.8})
+    with pytest.raises(ConfigurationError, match=named("drive.width", "width")):
+        peristalsis.Configuration("frictionless-fine").replace({"drive.width": 2.5}, width=2.5)
+
+
+def test_a_study_is_no_configuration_of_one_run(tmp_path: Path) -> None:
+    file = tmp_path / "study.toml"
+    file.write_text("name = 'many'\npreset = 'frictionless'\n\n[base]\nrun.periods = 1\n")
+    with pytest.raises(ConfigurationError, match="is a study, not the configuration of one run(?s:.*)study run"):
+        Simulation.from_file(file)

@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{process, thread};
 
 use rayon::{ThreadPool, ThreadPoolBuilder, Yield};
 
@@ -25,6 +25,15 @@ pub fn threads_that_pay(kernel: Kernel, spheres: usize, processors: usize) -> us
 /// Processors that this process may use.
 pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, |number| number.get())
+}
+
+/// Number of this process, where there are processes.
+fn this_process() -> u32 {
+    if cfg!(target_family = "wasm") {
+        0
+    } else {
+        process::id()
+    }
 }
 
 /// Stretches of work for each thread, at least and at most: one that is done early takes what others have not begun.
@@ -56,6 +65,8 @@ struct Service(Arc<Served>);
 
 #[derive(Debug)]
 struct Served {
+    /// Where the threads are: a fork of the process has none of them.
+    process: u32,
     team: Team,
     /// How many advances go on.
     advances: AtomicUsize,
@@ -105,6 +116,7 @@ impl Threads {
             return Ok(Self::default());
         }
         let service = Service(Arc::new(Served {
+            process: this_process(),
             team: Team::new(threads),
             advances: AtomicUsize::new(0),
             ended: Mutex::new(false),
@@ -127,6 +139,12 @@ impl Threads {
     pub(crate) fn number(&self) -> usize {
         let pool = self.0.as_deref();
         pool.map_or(1, |pool| pool.threads.current_num_threads())
+    }
+
+    /// Whether they are in this process, not in one that it was forked from.
+    pub(crate) fn are_here(&self) -> bool {
+        let pool = self.0.as_deref();
+        pool.is_none_or(|pool| pool.service.0.process == this_process())
     }
 
     /// Which of them this one is, if any.
@@ -344,7 +362,10 @@ impl Served {
 
 impl Drop for Service {
     fn drop(&mut self) {
-        self.0.tell(|ended| *ended = true);
+        // Elsewhere a thread may have held the lock as the process was forked, and hears nothing.
+        if self.0.process == this_process() {
+            self.0.tell(|ended| *ended = true);
+        }
     }
 }
 

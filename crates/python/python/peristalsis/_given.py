@@ -45,8 +45,15 @@ def positive(name: str, value: Any) -> float:
     return found
 
 
+def unmasked(value: Any, error: type[ValueError] = ValueError) -> None:
+    """Refuses masked entries: an array made of them would have what stands below the mask."""
+    if isinstance(value, np.ma.MaskedArray) and (places := np.flatnonzero(np.ma.getmaskarray(value))).size:
+        raise error(f"value {places[0]} is masked: leave it out, as with .compressed()")
+
+
 def numbers(name: str, value: Any) -> Array:
     """A new array of numbers."""
+    unmasked(value)
     try:
         return np.array(value, dtype=float)
     except (TypeError, ValueError):

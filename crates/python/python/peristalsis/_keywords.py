@@ -61,9 +61,18 @@ def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> d
     Raises
     ------
     ConfigurationError
-        For a keyword that there is not, or that could mean several keys.
+        For a keyword that there is not, or that could mean several keys; for a key that is given twice.
     """
-    joined = dict(_flat(settings or {}))
+    joined: dict[str, Any] = {}
+    names: dict[str, str] = {}
+
+    def give(key: str, name: str, value: Any) -> None:
+        if key in joined:
+            raise ConfigurationError(f"{names[key]} and {name} both are {key}\n  help: give one of them")
+        joined[key], names[key] = value, name
+
+    for key, name, value in _flat(settings or {}):
+        give(key, name, value)
     for keyword, value in given.items():
         keys = keywords().get(keyword)
         if keys is None:
@@ -73,7 +82,7 @@ def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> d
                 f"{keyword} could mean {' or '.join(keys)}\n"
                 f"  help: write {' or '.join(key.replace('.', '_') for key in keys)}"
             )
-        joined[keys[0]] = value
+        give(keys[0], keyword, value)
     return {key: _plain(key, value) for key, value in joined.items()}
 
 
@@ -92,10 +101,10 @@ def _plain(key: str, value: Any) -> Any:
     return value
 
 
-def missing(key: str, keys: Iterable[str]) -> str:
+def missing(key: object, keys: Iterable[str]) -> str:
     """What to say of a dotted key that a configuration does not have."""
     last = {other.rpartition(".")[2]: other for other in keys}
-    near = get_close_matches(key.rpartition(".")[2], last, 1)
+    near = get_close_matches(str(key).rpartition(".")[2], last, 1)
     meant = f"; did you mean {last[near[0]]!r}?" if near else ""
     return f"there is no key {key!r} in this configuration{meant}"
 
@@ -105,10 +114,11 @@ def _meant(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-def _flat(settings: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+def _flat(settings: Mapping[str, Any], path: str = "", name: str = "") -> Iterator[tuple[str, str, Any]]:
+    """Dotted keys, how they were given, and their values."""
     for key, value in settings.items():
-        full = f"{path}.{key}" if path else key
+        full, given = (f"{path}.{key}", f"{name}[{key!r}]") if path else (key, key)
         if isinstance(value, Mapping) and full != "drive.schedule":
-            yield from _flat(value, full)
+            yield from _flat(value, full, given)
         else:
-            yield full, value
+            yield full, given, value

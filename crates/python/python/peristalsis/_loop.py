@@ -11,7 +11,7 @@ from . import _core
 from ._arrays import Array
 from ._core import AnalysisError, Table
 from ._progress import Progress, Shown
-from ._warnings import tell
+from ._warnings import Telling
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
@@ -164,7 +164,7 @@ def ramp(
     if back:
         course += [("back", float(value)) for value in values[::-1]]
     found: list[tuple[float, float]] = []
-    with Progress(simulation, len(course), shown, "levels") as display:
+    with Telling(simulation), Progress(simulation, len(course), shown, "levels") as display:
         for number, (_, value) in enumerate(course):
             setattr(simulation, parameter, value)
             # A doubt of one level may be none of the whole, such as a threshold that is crossed later.
@@ -174,7 +174,6 @@ def ramp(
             simulation._step(steps, threads=threads)
             found.append(_late(simulation, periods, settle))
             display.update(number + 1)
-    tell(simulation.warnings, simulation._told)
     means, errors = (np.array(column) for column in zip(*found))
     names = tuple(name for name, _ in course)
     return Loop(parameter, names, np.array([value for _, value in course]), means, errors, threshold)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 from . import _core
 from ._drive import Drive, View
 from ._picture import Picture
-from ._writers import Writer
+from ._writers import Writer, held
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
@@ -64,7 +64,8 @@ class Output(Drive):
         if isinstance(path, Writer) and (every, at, overwrite) != (None, None, False):
             raise TypeError("add_writer takes a Writer, or what one is made of, not both")
         writer = path if isinstance(path, Writer) else Writer(path, every, at, overwrite=overwrite)
-        writer._begin(cast("Simulation", self))
+        with held([*self._writers, writer]):
+            writer._begin(cast("Simulation", self))
         self._writers.append(writer)
         return writer
 

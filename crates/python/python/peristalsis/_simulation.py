@@ -15,8 +15,8 @@ from ._given import number, positive, whole
 from ._loop import Loop, ramp
 from ._made import Made
 from ._progress import Progress, Shown
-from ._warnings import PeristalsisWarning, outside, tell
-from ._writers import Trigger, Writer, listed, triggers
+from ._warnings import PeristalsisWarning, Telling, outside
+from ._writers import Trigger, Writer, held, listed, triggers
 
 if TYPE_CHECKING:
     from ._loop import _Parameter
@@ -163,7 +163,7 @@ class Simulation(Made):
         Parameters
         ----------
         steps : int
-            Steps, from 0 on.
+            Steps, from 0 to 10^12.
         progress, callback, every, writers, threads
             As of `run`.
 
@@ -180,8 +180,8 @@ class Simulation(Made):
         >>> sim.steps
         3
         """
-        self._step(steps, progress, callback, every, writers, threads)
-        tell(self.warnings, self._told)
+        with Telling(self):
+            self._step(steps, progress, callback, every, writers, threads)
 
     def _step(
         self,
@@ -193,7 +193,7 @@ class Simulation(Made):
         threads: int | None = None,
     ) -> None:
         """As `step`, but tells no doubts."""
-        steps = whole("steps", steps, 0)
+        steps = whole("steps", steps, 0, int(_MOST_STEPS))
         each = self._run.steps_per_sample if every is None else whole("every", every, 1)
         if not self._running.acquire(blocking=False):
             raise RuntimeError("this simulation is running already")
@@ -201,16 +201,17 @@ class Simulation(Made):
             self._run.compute_with(None if threads is None else whole("threads", threads, 1, 1024))
             files = list(dict.fromkeys([*self._writers, *listed(writers)]))
             called: list[Trigger | Writer] = [*triggers(callback, each, self.steps), *files]
-            for writer in files:
-                writer._begin(self)
-            with Progress(self, steps, progress) as display:
-                try:
-                    self._advance(steps, called, display)
-                finally:
-                    for writer in files:
-                        writer._synchronize()
-                    for view in tuple(self._views):
-                        view._show()
+            with held(files):
+                for writer in files:
+                    writer._begin(self)
+                with Progress(self, steps, progress) as display:
+                    try:
+                        self._advance(steps, called, display)
+                    finally:
+                        for writer in files:
+                            writer._synchronize()
+                        for view in tuple(self._views):
+                            view._show()
         finally:
             self._running.release()
 

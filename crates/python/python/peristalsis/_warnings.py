@@ -6,7 +6,11 @@ import re
 import sys
 import warnings
 from collections.abc import Iterable
-from typing import NamedTuple
+from types import TracebackType
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from ._simulation import Simulation
 
 #: A number in a message.
 _NUMBER = re.compile(r"[-+.\de]*\d[-+.\de]*")
@@ -66,6 +70,29 @@ def tell(doubts: Iterable[KeyedWarning], told: set[str]) -> None:
         if kind(doubt) not in told:
             told.add(kind(doubt))
             warnings.warn(str(doubt), PeristalsisWarning, stacklevel=outside())
+
+
+class Telling:
+    """Tells the doubts of a simulation at the end of what is done with it, by an exception too."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        try:
+            tell(self._simulation.warnings, self._simulation._told)
+        except PeristalsisWarning:
+            # Where warnings are made errors, an earlier one goes first.
+            if error is None:
+                raise
 
 
 def outside() -> int:

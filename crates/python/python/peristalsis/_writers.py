@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Sequence
+import threading
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -50,6 +52,30 @@ def triggers(callback: _Callbacks | None, every: int, now: int) -> list[Trigger]
     return found
 
 
+#: The writers that write now, by their files.
+_HELD: dict[Path, Writer] = {}
+_LOCK = threading.Lock()
+
+
+@contextmanager
+def held(writers: Iterable[Writer]) -> Iterator[None]:
+    """Holds the files of writers: nobody else writes to them meanwhile."""
+    mine: list[Path] = []
+    try:
+        with _LOCK:
+            for writer in writers:
+                path = writer.path.resolve()
+                if _HELD.get(path, writer) is not writer:
+                    raise ValueError(f"{writer.path} gets the frames of another writer already: take another name")
+                if path not in _HELD:
+                    _HELD[path] = writer
+                    mine.append(path)
+        yield
+    finally:
+        for path in mine:
+            del _HELD[path]
+
+
 def listed(writers: Iterable[Writer]) -> list[Writer]:
     """The writers given, each once."""
     found = [writers] if isinstance(writers, Writer) or not isinstance(writers, Iterable) else list(writers)
@@ -84,7 +110,7 @@ class Writer:
     ------
     ValueError
         For an unknown ending, spans or instants that cannot be read, or, when the first frame is due, an interval
-        shorter than a step.
+        shorter than a step, or a file that another writer writes to.
     FileExistsError
         Where there is such a file already, when the first frame is due.
 

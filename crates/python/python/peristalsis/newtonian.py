@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._core import Newtonian, trapping_threshold
+from ._given import unmasked
 
 __all__ = ["Newtonian", "field", "flow_rate_ratio", "trapping_threshold"]
 
@@ -51,6 +52,7 @@ def flow_rate_ratio(
     >>> float(flow_rate_ratio(0.0))
     1.0
     """
+    unmasked(width)
     widths = np.asarray(width, dtype=np.float64)
     ratios = [Newtonian.from_width(w, radius, pressure).flow_rate_ratio for w in widths.flat]
     return np.array(ratios, dtype=np.float64).reshape(widths.shape)
@@ -72,8 +74,9 @@ def field(
     Returns
     -------
     tuple of ndarray
-        Axial velocity [c], radial velocity [c a/lambda] and Stokes' stream function psi [c a^2], of the
-        common shape. In the frame of the wave the flow is steady and follows lines of constant psi: d psi/dr = r (v_z - c).
+        Axial velocity [c], radial velocity [c a/lambda] and Stokes' stream function psi [c a^2], of the common shape; NaN
+        beyond the wall, where there is no fluid. In the frame of the wave the flow is steady and follows lines of constant
+        psi: d psi/dr = r (v_z - c).
 
     Examples
     --------
@@ -82,6 +85,8 @@ def field(
     >>> axial.shape
     (2, 2)
     """
+    unmasked(radius)
+    unmasked(position)
     r, x = np.broadcast_arrays(
         np.asarray(radius, dtype=np.float64), np.asarray(position, dtype=np.float64)
     )

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from .._arrays import Array, Runs, RunTable
 from .._core import AnalysisError
+from .._given import unmasked
 from ._results import Uncertain
 
 Numbers = npt.ArrayLike
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 
 def reals(values: Numbers) -> Array:
     """A column of numbers."""
+    unmasked(values, AnalysisError)
     array = np.ascontiguousarray(values, dtype=np.float64)
     if array.ndim != 1:
         raise ValueError(f"a column has one dimension, not {array.ndim}")
@@ -54,6 +56,7 @@ def columns(*given: Numbers) -> list[Array]:
 
 def truths(values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
     """A column of truth values, none of them missing."""
+    unmasked(values, AnalysisError)
     array = np.asarray(values)
     if array.dtype != bool:
         try:

@@ -10,6 +10,8 @@ import numpy.typing as npt
 
 from .. import _core
 from .._arrays import Array
+from .._core import AnalysisError
+from .._given import unmasked
 from ._columns import Numbers, reals, result, runs
 from ._results import LifetimeFit, RestrictedMoments, ShiftedExponentialFit, SurvivalStep, Uncertain
 
@@ -105,6 +107,7 @@ class Survival:
         >>> analysis.Survival([1.0, 2.0]).at([0.0, 1.5]).tolist()
         [1.0, 0.5]
         """
+        unmasked(time, AnalysisError)
         times = np.array([step.time for step in self.steps])
         levels = np.array([1.0, *(step.survival.value for step in self.steps)])
         return levels[np.searchsorted(times, np.asarray(time, dtype=np.float64), side="right")]
