@@ -25,11 +25,11 @@ pub enum RunError {
         limit: f64,
     },
     /// Too many spheres for the memory.
-    #[error("{spheres} moving spheres take about {:.1} GB of memory, which the system does not give", *bytes as f64 / 1e9)]
+    #[error("a run of {spheres} moving spheres takes up to some {:.1} GB of memory, which the system does not give", *bytes as f64 / 1e9)]
     NoMemory {
         /// Grains, and spheres of an elastic wall.
         spheres: u64,
-        /// Memory that they take, about.
+        /// Memory that the run takes at most, about.
         bytes: u64,
     },
     /// The configuration of a record cannot be read.
