@@ -177,9 +177,8 @@ fn clear_openings(configuration: &Configuration) -> Option<[f64; 2]> {
     };
     let wall = walls(configuration);
     let wave = wall.wave()?;
-    let amplitude = wave.amplitude.abs();
-    let radii = [-amplitude, amplitude * wave.contraction.largest()];
-    Some(radii.map(|by| (2.0 * (wave.mean_radius + by) - wall.sphere_diameter()).max(0.0)))
+    let radii = [wave.throat_radius(), wave.belly_radius()];
+    Some(radii.map(|radius| (2.0 * radius - wall.sphere_diameter()).max(0.0)))
 }
 
 /// A warning under the hardest drive of drive.schedule.

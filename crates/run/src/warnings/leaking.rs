@@ -22,7 +22,7 @@ pub(super) fn warning(
     wave: &RadiusWave,
     lattice: &Lattice,
 ) -> Option<Warning> {
-    let widest = wave.mean_radius + wave.amplitude.abs() * wave.contraction.largest();
+    let widest = wave.belly_radius();
     let key = "tube.rings_per_wave";
     let passing = lattice.largest_passing_radius(widest);
     if passing > LEAKING_RADIUS {
