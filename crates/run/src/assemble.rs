@@ -325,7 +325,7 @@ pub fn scheduled_wavelengths(configuration: &Configuration) -> Option<f64> {
     Some(frequency(configuration).integral(configuration.run.duration))
 }
 
-/// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without
+/// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d_w/2)), J/Jmax without
 /// pressure rise, whatever the body force, for the load of a fluid counts against a viscosity, which grains do not have; the
 /// second is missing where the clear bore closes. `None` under stress control, where the width follows a schedule, for a
 /// static wave and for waveforms other than the sine.

@@ -70,7 +70,7 @@ pub struct Estimate {
     pub restitution: f64,
     /// J/Jmax of a Newtonian fluid in this tube, phi = b/a, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
-    /// The same in the clear bore, phi = b/(a - d/2).
+    /// The same in the clear bore, phi = b/(a - d_w/2).
     pub newtonian_flow_rate_ratio_clear_bore: Option<f64>,
     /// The estimate in SI, where the configuration says its units.
     pub si: Option<SiEstimate>,

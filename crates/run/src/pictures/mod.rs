@@ -279,7 +279,7 @@ fn newtonian_fluid(summary: &Summary, last: f64) -> Vec<Line> {
     let load = summary.pumping.as_ref().map_or("", |_| " without load");
     let name = format!("Newtonian fluid{load} (Shapiro et al. 1969), *φ* = *b*/*a*");
     let in_bore = level(bore, &name, Pattern::Dashed);
-    let name = "the same, clear bore, *φ* = *b*/(*a* − *d*/2)";
+    let name = "the same, clear bore, *φ* = *b*/(*a* − *d*_{w}/2)";
     let in_clear_bore = level(clear_bore.flatten(), name, Pattern::DashDotted);
     in_bore.into_iter().chain(in_clear_bore).collect()
 }

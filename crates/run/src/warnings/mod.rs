@@ -106,7 +106,7 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
         if opening <= 0.0 {
             let led = configuration.drive.schedule(ScheduledParameter::Width);
             let key = led.map_or("drive.width", |_| "drive.schedule");
-            let closes = "the tube closes on itself: the clear opening of the bottleneck, w - d";
+            let closes = "the tube closes on itself: the clear opening of the bottleneck, w - d_w";
             let message = match configuration.tube.arrangement {
                 Arrangement::Smooth => format!(
                     "{closes}, is {opening:.2}; a grain that it closes on is pressed into the wall by up to {:.2} d on \
