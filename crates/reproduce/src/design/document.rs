@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
+use peristalsis_analysis::number::rounded;
 use peristalsis_configuration::document::{self, Table};
 use peristalsis_configuration::{
     Configuration, ConfigurationError, Grains, MATERIALS, MOST_GRAINS, Material, Observe, Problem,
@@ -180,7 +181,7 @@ pub fn configuration_text(
     // Contacts of small grains among large ones are short.
     let longest = longest_time_step(&configuration);
     if configuration.run.time_step > longest {
-        text += &format!("time_step = {:?}\n", three_digits(0.99 * longest));
+        text += &format!("time_step = {:?}\n", rounded(0.99 * longest, 3));
         read(&text)?;
     }
     Ok(text)
@@ -296,11 +297,6 @@ fn component(value: f64) -> f64 {
     if value.abs() < 1e-15 { 0.0 } else { value }
 }
 
-/// A number with three digits.
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
-}
-
 fn written(keys: &Keys, name: &str) -> String {
     let (grain, tube, drive) = (&keys.grain, &keys.tube, &keys.drive);
     let d = grain.diameter;
@@ -311,7 +307,7 @@ fn written(keys: &Keys, name: &str) -> String {
     let density = of(grain.density, |it| it.density);
     let stiffness = grain
         .stiffness
-        .unwrap_or_else(|| three_digits(stiffness(keys, density)));
+        .unwrap_or_else(|| rounded(stiffness(keys, density), 3));
     let bore = tube.diameter / d;
     // Half a wall sphere is within the radius on either side.
     let radius = 0.5 * (bore + 1.0);

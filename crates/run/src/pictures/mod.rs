@@ -4,7 +4,7 @@ mod discharge;
 mod profile;
 mod snapshot;
 
-use peristalsis_analysis::number::{decimal, plain, with_error};
+use peristalsis_analysis::number::{decimal, plain, rounded, with_error};
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter, WaveformName, word};
 use peristalsis_figures::chart::{
     Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
@@ -153,10 +153,12 @@ fn scheduled_value(
 
 /// A number as it was given, with up to six digits; what SI has made of one, with three.
 fn short(value: f64) -> String {
-    let with = |digits: usize| format!("{value:.0$e}", digits - 1).parse().unwrap_or(value);
-    let given: f64 = with(6);
-    let made: f64 = with(3);
-    if given == value { given } else { made }.to_string()
+    let given = rounded(value, 6);
+    if given == value {
+        given.to_string()
+    } else {
+        rounded(value, 3).to_string()
+    }
 }
 
 fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
