@@ -198,14 +198,15 @@ fn on_curve(rows: &[Row], friction: f64, height: f64, saturation: f64) -> Check 
 }
 
 fn table(rows: &[Row]) -> Result<Table> {
-    Columns::of(rows)
+    let table = Columns::of(rows)
         .number("friction", "1", "mu", |row| row.column.friction)
         .number("height", "D", "nominal", |row| row.column.height)
         .number("seed", "", "number", |row| row.column.seed as f64)
         .number("filling", "m", "M", |row| row.load.filling)
         .number("apparent", "m", "M_app", |row| row.load.apparent)
         .number("stress_ratio", "1", "K", |row| row.load.stress_ratio())
-        .table()
+        .table()?;
+    Ok(table)
 }
 
 fn drawing(rows: &[Row], curves: &[(f64, f64)]) -> ChartFigure {
