@@ -112,6 +112,23 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// A number rounded to so many significant digits.
+pub fn rounded(value: f64, digits: usize) -> f64 {
+    let after_the_first = digits - 1;
+    let text = format!("{value:.after_the_first$e}");
+    text.parse().unwrap_or(value)
+}
+
+/// A number of bytes in a unit that suits it: "12.3 MB".
+pub fn bytes(number: f64) -> String {
+    for (factor, unit) in [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")] {
+        if number >= factor {
+            return format!("{:.1} {unit}", number / factor);
+        }
+    }
+    format!("{number:.0} B")
+}
+
 /// So many of something, in the plural where it is not one: "1 run", "2 finished runs".
 pub fn counted(number: impl fmt::Display, of: &str) -> String {
     let number = number.to_string();
@@ -378,6 +395,27 @@ mod tests {
             (f64::NAN, 4, "NaN"),
         ] {
             assert_eq!(significant(value, digits), text);
+        }
+    }
+
+    #[test]
+    fn numbers_are_rounded_to_significant_digits() {
+        assert_eq!(
+            [12302.02, 1.234, 0.61, -0.0].map(|value| rounded(value, 2)),
+            [12000.0, 1.2, 0.61, -0.0]
+        );
+        assert!(rounded(f64::NAN, 2).is_nan());
+    }
+
+    #[test]
+    fn bytes_have_the_unit_that_suits_them() {
+        for (number, text) in [
+            (999.0, "999 B"),
+            (1e3, "1.0 kB"),
+            (12.34e6, "12.3 MB"),
+            (2.02e12, "2.0 TB"),
+        ] {
+            assert_eq!(bytes(number), text);
         }
     }
 

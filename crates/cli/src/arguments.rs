@@ -11,7 +11,7 @@ use peristalsis_reproduce::textbook::CASES;
 use peristalsis_reproduce::{CLAIMS, Extent};
 use peristalsis_run::{Run, Span, TrajectoryFormat, Window};
 
-use crate::choice::{Offered, TRAJECTORIES, one_of};
+use crate::choice::{Offered, TRAJECTORIES, names, one_of};
 use crate::commands::design::DesignArguments;
 use crate::commands::render::RenderArguments;
 use crate::commands::schema::SchemaArguments;
@@ -66,6 +66,12 @@ pub(crate) enum Command {
     Completions(CompletionsArguments),
 }
 
+/// Help of `--set`.
+const SET: &str =
+    "Sets a key, such as drive.width=2.7, whatever preset and file say; may be repeated";
+/// Help of `--threads`.
+const THREADS: &str = "Number of threads, or auto: as many as pay for the number of moving spheres. Results do not depend on it";
+
 /// Where a configuration comes from.
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct ConfigurationArguments {
@@ -75,8 +81,7 @@ pub(crate) struct ConfigurationArguments {
     /// Preset to start from; values of a file and of --set replace its own (see `peristalsis presets`).
     #[arg(long, value_name = "NAME", value_parser = presets())]
     pub(crate) preset: Option<String>,
-    /// Sets a key, such as drive.width=2.7, whatever preset and file say; may be repeated.
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", help = SET)]
     pub(crate) overrides: Vec<String>,
     /// Length of the run in periods of drive.strain_rate (run.periods), rounded up to whole samples. `run --resume` takes the
     /// new length of the whole run, to the same bits as one run of that length.
@@ -104,8 +109,7 @@ pub(crate) struct RunArguments {
     /// Folder for the results; it must not hold a run. Unless given: a new one, runs/NAME-1, runs/NAME-2, ...
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Number of threads, or auto: as many as pay for the number of moving spheres. Results do not depend on it.
-    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N|auto", help = THREADS, default_value = "auto", value_parser = threads, allow_negative_numbers = true)]
     pub(crate) threads: Threads,
     /// Instruction set; the default is the widest of this machine. Results do not depend on it.
     #[arg(long, value_name = "SET", value_parser = one_of(Instructions::ALL))]
@@ -137,9 +141,9 @@ pub(crate) struct RunArguments {
 /// Which frames a run leaves beside its record.
 #[derive(Debug, Args)]
 pub(crate) struct FrameArguments {
-    /// Write the spheres frame by frame, in these formats: gsd, vtp, lammps. With --resume the formats stay as they were.
     #[arg(
         long,
+        help = format!("Write the spheres frame by frame, in these formats: {}. With --resume the formats stay as they were", names(TRAJECTORIES)),
         value_name = "FORMAT,...",
         value_parser = one_of(TRAJECTORIES),
         value_delimiter = ',',
@@ -159,9 +163,9 @@ pub(crate) struct TrajectoryArguments {
     /// Folder of a run, finished or stopped; none of its files is changed.
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
-    /// Formats: gsd, vtp, lammps.
     #[arg(
         long = "format",
+        help = format!("Formats: {}", names(TRAJECTORIES)),
         value_name = "FORMAT,...",
         value_parser = one_of(TRAJECTORIES),
         value_delimiter = ',',
@@ -192,8 +196,7 @@ pub(crate) struct ViewArguments {
     /// of a preset; store of a study, folder of a reproduction, or table of rows of runs (.parquet, .csv).
     #[arg(value_name = "DIR|FILE|PRESET", default_value = "frictionless")]
     pub(crate) source: PathBuf,
-    /// Sets a key, such as drive.width=2.7, whatever preset and file say; may be repeated.
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", help = SET)]
     pub(crate) overrides: Vec<String>,
     /// Compute the run of a folder anew, even if the folder holds a trajectory.
     #[arg(long)]
@@ -207,8 +210,7 @@ pub(crate) struct ViewArguments {
     /// Folder for the states that you save on the page.
     #[arg(long, value_name = "DIR", default_value = "saved-states")]
     pub(crate) saves: PathBuf,
-    /// Number of threads, or auto: as many as pay for the number of moving spheres. Results do not depend on it.
-    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N|auto", help = THREADS, default_value = "auto", value_parser = threads, allow_negative_numbers = true)]
     pub(crate) threads: Threads,
 }
 

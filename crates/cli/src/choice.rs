@@ -95,6 +95,12 @@ pub(crate) const TRAJECTORIES: &[Choice<TrajectoryFormat>] = &[
 ];
 const GENERAL: &str = "General Simulation Data: OVITO, freud, Python's gsd";
 
+/// The names of all choices, as a list in a text.
+pub(crate) fn names<T>(choices: &[Choice<T>]) -> String {
+    let names: Vec<&str> = choices.iter().map(|(name, ..)| *name).collect();
+    names.join(", ")
+}
+
 /// The value of a name, if it is one.
 pub fn value_of<T: Copy>(choices: &[Choice<T>], name: &str) -> Option<T> {
     let known = choices.iter().find(|(known, ..)| *known == name);

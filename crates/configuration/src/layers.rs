@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use peristalsis_physics::contact::NormalLaw;
+use peristalsis_physics::ends::Ends;
+use peristalsis_physics::sizes::SizeForm;
 use peristalsis_physics::wall::{Arrangement, ElasticNetwork, SegmentDrive};
 
 use crate::document::{self, Entry, Table};
@@ -13,6 +15,7 @@ use crate::materials::{self, MATERIAL};
 use crate::schema::{self, Choice};
 use crate::source::SourceFile;
 use crate::units;
+use crate::waveform::WaveformName;
 use crate::word;
 
 /// A key whose value decides which other keys have a meaning.
@@ -91,29 +94,32 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
         arrangement.owns(&word(Arrangement::File), key);
     }
     switches.push(arrangement);
-    let mut sizes = Switch::by_default("grains.sizes", "uniform");
+    let mut sizes = Switch::by_default("grains.sizes", word(SizeForm::default()));
     for (form, keys) in [
-        ("lognormal", &["diameter_median", "diameter_spread"][..]),
-        ("two", &["large_fraction", "large_volume_fraction"]),
-        ("table", &["file", "diameters", "fractions"]),
+        (
+            SizeForm::Lognormal,
+            &["diameter_median", "diameter_spread"][..],
+        ),
+        (SizeForm::Two, &["large_fraction", "large_volume_fraction"]),
+        (SizeForm::Table, &["file", "diameters", "fractions"]),
     ] {
         for key in keys {
-            sizes.owns(form, format!("grains.{key}"));
+            sizes.owns(&word(form), format!("grains.{key}"));
         }
     }
     switches.push(sizes);
-    let mut ends = Switch::by_default("tube.ends", "periodic");
+    let mut ends = Switch::by_default("tube.ends", word(Ends::default()));
     for key in OPEN {
-        ends.owns("open", key);
+        ends.owns(&word(Ends::Open), key);
     }
     switches.push(ends);
-    let mut waveform = Switch::by_default("drive.waveform", "sine");
+    let mut waveform = Switch::by_default("drive.waveform", word(WaveformName::default()));
     let segments = schema::of::<SegmentDrive>();
     for (name, _) in segments["properties"].as_object().into_iter().flatten() {
-        waveform.owns("segments", format!("drive.{name}"));
+        waveform.owns(&word(WaveformName::Segments), format!("drive.{name}"));
     }
     for name in ["table", "phases", "radii"] {
-        waveform.owns("table", format!("drive.{name}"));
+        waveform.owns(&word(WaveformName::Table), format!("drive.{name}"));
     }
     switches.push(waveform);
     switches

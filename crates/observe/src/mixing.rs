@@ -3,7 +3,6 @@
 use peristalsis_engine::Simulation;
 use serde::{Deserialize, Serialize};
 
-use crate::sample::Observer;
 use crate::view::View;
 
 /// Cells that the grains are counted in, at most; an even number, so that both kinds fill whole cells at the start.
@@ -69,17 +68,22 @@ impl Kinds {
 }
 
 impl Mixing {
-    /// How the grains inside the tube are mixed now.
-    pub(crate) fn of(observer: &Observer, view: &View<'_>) -> Option<Self> {
-        let kinds = &observer.kinds;
+    /// How the grains inside the tube are mixed now; `start` and `unfolded` are the z at which they began and, of the
+    /// unfolded tube, where they are \[d\].
+    pub(crate) fn of(
+        kinds: &Kinds,
+        start: &[f64],
+        unfolded: &[f64],
+        view: &View<'_>,
+    ) -> Option<Self> {
         if kinds.behind.is_empty() {
             return None;
         }
         let inside = || (0..view.inside.len()).filter(|&grain| view.inside[grain]);
-        let moved = |grain: usize| observer.unfolded[grain] - observer.start[grain];
+        let moved = |grain: usize| unfolded[grain] - start[grain];
         let mean = inside().map(moved).sum::<f64>() / inside().count() as f64;
         let length = view.simulation.length();
-        let along = |grain: usize| (observer.unfolded[grain] - mean).rem_euclid(length);
+        let along = |grain: usize| (unfolded[grain] - mean).rem_euclid(length);
         let radial = |grain: usize| view.radial_place(grain);
         Some(Self {
             axial: index(&in_order(inside(), &along), &kinds.behind)?,

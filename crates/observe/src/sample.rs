@@ -208,7 +208,7 @@ impl Observer {
 
     /// Ends a period together with the last interval: looks how the grains lie, which takes as long as a few steps.
     pub fn end_period(&mut self, view: &View<'_>) {
-        self.mixing = Mixing::of(self, view);
+        self.mixing = Mixing::of(&self.kinds, &self.start, &self.unfolded, view);
         self.segregation = Segregation::of(view);
     }
 }

@@ -68,7 +68,7 @@ impl TubeShape {
     #[inline]
     pub(crate) fn least_radius(&self) -> f64 {
         match self {
-            Self::Wave(wave, _) => (wave.mean_radius - wave.amplitude.abs()).max(0.0),
+            Self::Wave(wave, _) => wave.throat_radius().max(0.0),
             Self::Slices(..) => 0.0,
         }
     }

@@ -133,7 +133,7 @@ pub(crate) fn rows_of(table: &Table) -> Vec<Row<'_>> {
 
 /// Column of the transition time at one of [`THRESHOLDS`].
 fn threshold_column(place: usize) -> String {
-    format!("transition_time_{}", 10 * (place + 1))
+    format!("transition_time_{:.0}", 100.0 * THRESHOLDS[place])
 }
 
 /// Place of the one of [`THRESHOLDS`] that is nearest.

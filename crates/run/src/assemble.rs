@@ -12,12 +12,11 @@ use peristalsis_physics::newtonian::NewtonianPeristalsis;
 use peristalsis_physics::wall::{Arrangement, Lattice, Schedule};
 
 use crate::RunError;
+use crate::memory::check_memory;
 
 /// Volume fraction above which packing is not even tried: neighbours would be nearer than half a diameter, and the pairs
 /// to relax more than fit in memory.
 const LARGEST_VOLUME_FRACTION: f64 = 10.0;
-/// Bytes that a moving sphere takes, about: its state, its neighbours and its observables.
-const BYTES_PER_SPHERE: u64 = 1000;
 
 /// Packs the grains and makes the simulation of a configuration, at time 0.
 ///
@@ -223,25 +222,6 @@ fn check_places(simulation: &Simulation) -> Result<(), RunError> {
     }
 }
 
-/// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end
-/// the program later, in the middle of its work.
-pub(crate) fn check_memory(configuration: &Configuration) -> Result<(), RunError> {
-    let spheres = moving_spheres(configuration);
-    let bytes = spheres.saturating_mul(BYTES_PER_SPHERE);
-    let mut room: Vec<u8> = Vec::new();
-    let given = room.try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX));
-    given.map_err(|_| RunError::NoMemory { spheres, bytes })
-}
-
-/// Grains, and spheres of an elastic wall.
-pub(crate) fn moving_spheres(configuration: &Configuration) -> u64 {
-    let of_wall = match configuration.drive.control {
-        Control::Strain { .. } => 0,
-        Control::Stress { .. } => configuration.tube.wall_spheres(),
-    };
-    configuration.grains.number.saturating_add(of_wall)
-}
-
 /// How the engine computes a configuration.
 pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
     Parameters {
@@ -345,7 +325,7 @@ pub fn scheduled_wavelengths(configuration: &Configuration) -> Option<f64> {
     Some(frequency(configuration).integral(configuration.run.duration))
 }
 
-/// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without
+/// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d_w/2)), J/Jmax without
 /// pressure rise, whatever the body force, for the load of a fluid counts against a viscosity, which grains do not have; the
 /// second is missing where the clear bore closes. `None` under stress control, where the width follows a schedule, for a
 /// static wave and for waveforms other than the sine.

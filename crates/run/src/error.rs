@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use peristalsis_analysis::number;
 use peristalsis_engine::EngineError;
 
 /// Errors of a run and its record.
@@ -25,11 +26,11 @@ pub enum RunError {
         limit: f64,
     },
     /// Too many spheres for the memory.
-    #[error("{spheres} moving spheres take about {:.1} GB of memory, which the system does not give", *bytes as f64 / 1e9)]
+    #[error("a run of {spheres} moving spheres takes up to some {} of memory, which the system does not give", number::bytes(*bytes as f64))]
     NoMemory {
         /// Grains, and spheres of an elastic wall.
         spheres: u64,
-        /// Memory that they take, about.
+        /// Memory that the run takes at most, about.
         bytes: u64,
     },
     /// The configuration of a record cannot be read.

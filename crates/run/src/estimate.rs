@@ -4,13 +4,11 @@ use std::time::Instant;
 
 use peristalsis_configuration::{Configuration, Control, Kernel};
 use peristalsis_engine::{Instructions, processors, threads_that_pay};
-use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use crate::RunError;
-use crate::assemble::{
-    check_memory, check_number, moving_spheres, newtonian_reference, scheduled_wavelengths, walls,
-};
+use crate::assemble::{check_number, newtonian_reference, scheduled_wavelengths, walls};
+use crate::memory::{check_memory, memory, moving_spheres};
 use crate::run::Run;
 use crate::si::SiEstimate;
 use crate::spheres::SPHERE;
@@ -29,13 +27,6 @@ const TRIAL_GRAIN_STEPS: f64 = 3e6;
 const LEAST_STEPS: u64 = 100;
 /// Wall spheres in reach of a grain that take as long as the grain itself.
 const WALL_SPHERES_OF_A_GRAIN: f64 = 20.0;
-/// Bytes of the program itself with its figures.
-const BYTES_OF_PROGRAM: f64 = 3e7;
-/// Bytes of a frictionless grain in a prescribed tube, at most: while the grains of a dense tube are packed.
-const BYTES_OF_GRAIN: f64 = 2000.0;
-/// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered.
-const BYTES_WITH_CONTACTS: f64 = 4000.0;
-
 /// A run before it runs.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Estimate {
@@ -79,7 +70,7 @@ pub struct Estimate {
     pub restitution: f64,
     /// J/Jmax of a Newtonian fluid in this tube, phi = b/a, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
-    /// The same in the clear bore, phi = b/(a - d/2).
+    /// The same in the clear bore, phi = b/(a - d_w/2).
     pub newtonian_flow_rate_ratio_clear_bore: Option<f64>,
     /// The estimate in SI, where the configuration says its units.
     pub si: Option<SiEstimate>,
@@ -186,9 +177,8 @@ fn clear_openings(configuration: &Configuration) -> Option<[f64; 2]> {
     };
     let wall = walls(configuration);
     let wave = wall.wave()?;
-    let amplitude = wave.amplitude.abs();
-    let radii = [-amplitude, amplitude * wave.contraction.largest()];
-    Some(radii.map(|by| (2.0 * (wave.mean_radius + by) - wall.sphere_diameter()).max(0.0)))
+    let radii = [wave.throat_radius(), wave.belly_radius()];
+    Some(radii.map(|radius| (2.0 * radius - wall.sphere_diameter()).max(0.0)))
 }
 
 /// A warning under the hardest drive of drive.schedule.
@@ -201,21 +191,6 @@ pub fn restitution_at_wave_speed(configuration: &Configuration) -> f64 {
     let diameter = configuration.grains.distribution().mean(1);
     let impact = Impact::of_twins(diameter, configuration.wave_speed());
     configuration.contact.normal.rebound(impact).restitution
-}
-
-/// Bytes that a run takes at most, about: as measured of runs with many spheres and of runs with many samples.
-fn memory(configuration: &Configuration) -> f64 {
-    let waves = configuration.run.periods.unwrap_or(0.0) * f64::from(configuration.tube.waves);
-    let samples = configuration.run.samples as f64;
-    let of_sphere = if configuration.remembers_contacts() {
-        BYTES_WITH_CONTACTS
-    } else {
-        BYTES_OF_GRAIN
-    };
-    BYTES_OF_PROGRAM
-        + of_sphere * moving_spheres(configuration) as f64
-        + (size_of::<Sample>() as f64) * samples.min(MOST_ROWS as f64)
-        + (size_of::<WaveFlow>() as f64) * waves.min(MOST_ROWS as f64)
 }
 
 /// Numbers in the table of a run's spheres, about.

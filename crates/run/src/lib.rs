@@ -12,6 +12,7 @@ mod error;
 mod estimate;
 pub mod files;
 mod folder;
+mod memory;
 mod pace;
 mod pictures;
 mod recorder;

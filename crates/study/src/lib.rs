@@ -45,7 +45,7 @@ pub use identity::{Identity, NotAnIdentity, PHYSICS_VERSION, Record};
 pub use plan::{Plan, PlannedRun, Point, Setting, SettingValue};
 pub use refinement::{Bracket, Finding, brackets, refine};
 pub use row::Row;
-pub use row_difference::RowDifference;
+pub use row_difference::{RESUMMED, RowDifference};
 pub use scheduler::{Board, Effort, Ending, Working, work_on};
 pub use specification::{Specification, schema};
 pub use store::{Entry, Exported, Packed, STUDY, Staleness, State, Store, Survey, Verification};

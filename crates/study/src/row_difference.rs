@@ -19,7 +19,7 @@ const ADDED: [&str; 7] = [
     "belly_",
 ];
 /// Columns whose sums have been added up in another order since: programs may differ in their last digits.
-const RESUMMED: [&str; 3] = [
+pub const RESUMMED: [&str; 3] = [
     "flow_rate_ratio_variance",
     "wall_pressure",
     "wall_pressure_largest",

@@ -3,38 +3,11 @@
 use std::collections::VecDeque;
 
 use peristalsis_run::{Mark, Run};
-use serde::{Deserialize, Serialize};
 
-use crate::message::Steered;
+use crate::message::{Steered, Turn};
 
 /// States kept to come back to.
 const MARKS: usize = 24;
-
-/// A parameter that was led to a value at a step.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(from = "(u64, Steered, f64)", into = "(u64, Steered, f64)")]
-#[cfg_attr(test, derive(ts_rs::TS), ts(type = "[number, Steered, number]"))]
-pub(crate) struct Turn {
-    pub(crate) step: u64,
-    pub(crate) parameter: Steered,
-    pub(crate) value: f64,
-}
-
-impl From<(u64, Steered, f64)> for Turn {
-    fn from((step, parameter, value): (u64, Steered, f64)) -> Self {
-        Self {
-            step,
-            parameter,
-            value,
-        }
-    }
-}
-
-impl From<Turn> for (u64, Steered, f64) {
-    fn from(turn: Turn) -> Self {
-        (turn.step, turn.parameter, turn.value)
-    }
-}
 
 /// Where a run can be taken back to, and what to do again on the way from there.
 #[derive(Debug)]

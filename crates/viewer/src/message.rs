@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::course::Turn;
-
 /// A command of a client.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
@@ -78,6 +76,32 @@ impl Steered {
         Self::StrainRate,
         Self::Friction,
     ];
+}
+
+/// A parameter that was led to a value at a step.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
+#[serde(from = "(u64, Steered, f64)", into = "(u64, Steered, f64)")]
+#[cfg_attr(test, derive(ts_rs::TS), ts(type = "[number, Steered, number]"))]
+pub(crate) struct Turn {
+    pub(crate) step: u64,
+    pub(crate) parameter: Steered,
+    pub(crate) value: f64,
+}
+
+impl From<(u64, Steered, f64)> for Turn {
+    fn from((step, parameter, value): (u64, Steered, f64)) -> Self {
+        Self {
+            step,
+            parameter,
+            value,
+        }
+    }
+}
+
+impl From<Turn> for (u64, Steered, f64) {
+    fn from(turn: Turn) -> Self {
+        (turn.step, turn.parameter, turn.value)
+    }
 }
 
 /// A message to clients other than a frame.

@@ -9,9 +9,9 @@ use peristalsis_configuration::Configuration;
 use peristalsis_observe::MOST_ROWS;
 use peristalsis_run::{Run, RunError, RunFolder, Warning};
 
-use crate::course::{Course, Turn};
+use crate::course::Course;
 use crate::frame::{Head, contacts_of, of_run};
-use crate::message::{self, Command, Notice, Steered};
+use crate::message::{self, Command, Notice, Steered, Turn};
 use crate::steering::Steering;
 use crate::timeline::{Driven, Timeline, history, rows, thin};
 use crate::welcome::Welcome;

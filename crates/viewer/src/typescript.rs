@@ -6,9 +6,8 @@ use std::path::Path;
 
 use ts_rs::{Config, TS};
 
-use crate::course::Turn;
 use crate::frame::{Head, Shown};
-use crate::message::{Command, Notice, Steered};
+use crate::message::{Command, Notice, Steered, Turn};
 use crate::server::Figure;
 use crate::server::gallery::{List, Listed};
 use crate::server::study;

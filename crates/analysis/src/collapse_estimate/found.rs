@@ -78,9 +78,37 @@ impl<'a> Found<'a> {
         })
     }
 
+    /// Standard deviations of a place from the best.
+    fn excess(&self, other: &Smallest) -> f64 {
+        (other.value - self.best.value).max(0.0).sqrt()
+    }
+
+    /// Where a walk begins, with the error of the parameter there: at the farthest place to that side that another search
+    /// found as good.
+    fn begin(&self, axis: usize, deviations: f64) -> (Walk, f64) {
+        let centre = self.best.place[axis];
+        let beyond = |other: &Smallest| (other.place[axis] - centre) * deviations.signum();
+        let others = self.others.iter();
+        let others = others.filter(|other| self.excess(other) < deviations.abs());
+        let others = others.filter(|other| beyond(other) > 0.0);
+        let first = others.max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
+        let first = first.unwrap_or(&self.best);
+        let (inverse, slopes) = first.beside(axis);
+        let mut rest = first.place.clone();
+        let walk = Walk {
+            near: beyond(first),
+            at_near: self.excess(first),
+            held: rest.remove(axis),
+            rest,
+            slopes,
+            inverse,
+        };
+        (walk, (2.0 * first.inverse[axis][axis]).max(0.0).sqrt())
+    }
+
     /// End of an interval of a parameter, so many standard deviations to a side, by the profile of the likelihood;
-    /// infinite where the points leave it open. The walk begins at the farthest place to that side that another search
-    /// found as good, or where `walked`, the walk to a nearer end, has come. A better place that is met on the way goes to
+    /// infinite where the points leave it open. The walk [begins](Self::begin) at another search, or where `walked`, the walk
+    /// to a nearer end, has come farther. A better place that is met on the way goes to
     /// `better`.
     fn end(
         &self,
@@ -91,22 +119,7 @@ impl<'a> Found<'a> {
     ) -> (f64, Walk) {
         let wanted = deviations.abs();
         let centre = self.best.place[axis];
-        let beyond = |other: &Smallest| (other.place[axis] - centre) * deviations.signum();
-        let excess = |other: &Smallest| (other.value - self.best.value).max(0.0).sqrt();
-        let others = self.others.iter().filter(|other| excess(other) < wanted);
-        let others = others.filter(|other| beyond(other) > 0.0);
-        let first = others.max_by(|a, b| beyond(a).total_cmp(&beyond(b)));
-        let first = first.unwrap_or(&self.best);
-        let (inverse, slopes) = first.beside(axis);
-        let mut rest = first.place.clone();
-        let mut walk = Walk {
-            near: beyond(first),
-            at_near: excess(first),
-            held: rest.remove(axis),
-            rest,
-            slopes,
-            inverse,
-        };
+        let (mut walk, error) = self.begin(axis, deviations);
         if let Some(walked) = walked.filter(|walked| walked.near > walk.near) {
             walk = walked;
         }
@@ -149,10 +162,9 @@ impl<'a> Found<'a> {
                 place.insert(axis, value);
                 better.replace(self.likelihood.settle(&place));
             }
-            excess(&found)
+            self.excess(&found)
         };
         let step = self.likelihood.steps[axis];
-        let error = (2.0 * first.inverse[axis][axis]).max(0.0).sqrt();
         let mut far = near + (wanted - at_near) * error.clamp(1e-3 * step, 5.0 * step);
         let mut at_far = deviations_at(far);
         let open = deviations.signum() * f64::INFINITY;

@@ -2,12 +2,13 @@
 
 use std::process::ExitCode;
 
+use peristalsis_analysis::number::bytes;
 use peristalsis_configuration::Kernel;
 use peristalsis_engine::{SPHERES_OF_A_THREAD, processors};
 use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
-use crate::commands::trajectory::{request, size};
+use crate::commands::trajectory::request;
 use crate::commands::{counted, packing, print_report, rounded, significant};
 use crate::failure::Failure;
 use crate::progress::seconds;
@@ -182,12 +183,12 @@ fn cost(estimate: &Estimate) -> Vec<String> {
         format!("threads           {}: {why}", estimate.threads),
         format!(
             "memory            at most some {}",
-            size(estimate.memory_bytes as u64)
+            bytes(estimate.memory_bytes)
         ),
     ];
     if let Some(trajectory) = &estimate.trajectory {
-        for (format, bytes) in &trajectory.bytes {
-            let (name, size) = (format.file_name(), size(*bytes));
+        for (format, size) in &trajectory.bytes {
+            let (name, size) = (format.file_name(), bytes(*size as f64));
             let frames = counted(trajectory.frames, "frame");
             let every = format!("one every {}", counted(trajectory.interval_steps, "step"));
             lines.push(format!(

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use peristalsis_analysis::number::bytes;
 use peristalsis_run::{
     Run, RunError, RunFolder, Trajectory, TrajectoryPlan, TrajectoryReport, TrajectoryRequest,
     Window,
@@ -65,18 +66,11 @@ pub(crate) fn request(arguments: &FrameArguments) -> Option<TrajectoryRequest> {
 /// What was written, in a line.
 pub(crate) fn in_words(report: &TrajectoryReport) -> String {
     let files = report.files.iter().map(|file| file.display().to_string());
-    let (files, size) = (files.collect::<Vec<_>>().join(", "), size(report.bytes));
+    let (files, size) = (
+        files.collect::<Vec<_>>().join(", "),
+        bytes(report.bytes as f64),
+    );
     let frames = counted(report.frames, "frame");
     let interval = counted(report.interval_steps, "step");
     format!("{frames}, one every {interval}, {size}: {files}")
-}
-
-/// Bytes in a unit that suits them.
-pub(crate) fn size(bytes: u64) -> String {
-    match bytes as f64 {
-        bytes if bytes < 1e3 => format!("{bytes:.0} B"),
-        bytes if bytes < 1e6 => format!("{:.1} kB", bytes / 1e3),
-        bytes if bytes < 1e9 => format!("{:.1} MB", bytes / 1e6),
-        bytes => format!("{:.1} GB", bytes / 1e9),
-    }
 }

@@ -44,7 +44,7 @@ fn nested_relative_folders_are_made_and_filled() {
         "threshold",
         "mean over a period",
         "Newtonian fluid (Shapiro et al. 1969), φ = b/a",
-        "the same, clear bore, φ = b/(a − d/2)",
+        "the same, clear bore, φ = b/(a − dw/2)",
     ];
     assert_labels(&place.path("a/b/c/flow.svg"), &flow);
     let position = "position in the wave frame, (z − ct)/λ";

@@ -45,15 +45,8 @@ fn segments(drive: &Drive, tube: &Tube, context: &mut Context<'_>) -> Option<Opt
     if segments.order.is_empty() {
         segments.order = (1..=number).collect();
     }
+    check_strain_control(drive, "segments set", context)?;
     let kind = ProblemKind::Inconsistent;
-    if let Control::Stress { .. } = drive.control {
-        return context.refuse(
-            kind,
-            &["drive.waveform", "drive.control"],
-            "segments set the radius of the tube, and under stress control nothing does".into(),
-            "drive.control = \"strain\", or a waveform that travels: \"sine\", \"bolus\" or \"roller\"".into(),
-        );
-    }
     if tube.arrangement != Arrangement::Smooth && tube.rings_per_wave < 2 * number {
         return context.refuse(
             kind,
@@ -87,20 +80,25 @@ fn segments(drive: &Drive, tube: &Tube, context: &mut Context<'_>) -> Option<Opt
     Some(Some(segments))
 }
 
+/// Whether the radius can be set as it is: under stress control nothing sets it.
+fn check_strain_control(drive: &Drive, setting: &str, context: &mut Context<'_>) -> Option<()> {
+    let Control::Stress { .. } = drive.control else {
+        return Some(());
+    };
+    context.refuse(
+        ProblemKind::Inconsistent,
+        &["drive.waveform", "drive.control"],
+        format!("{setting} the radius of the tube, and under stress control nothing does"),
+        "drive.control = \"strain\", or the waveform \"sine\", \"bolus\" or \"roller\"".into(),
+    )
+}
+
 /// Whether the table of a wave that one gives is a curve.
 fn check_table(drive: &Drive, context: &mut Context<'_>) -> Option<()> {
     if drive.waveform != WaveformName::Table {
         return Some(());
     }
-    let kind = ProblemKind::Inconsistent;
-    if let Control::Stress { .. } = drive.control {
-        return context.refuse(
-            kind,
-            &["drive.waveform", "drive.control"],
-            "a table sets the radius of the tube, and under stress control nothing does".into(),
-            "drive.control = \"strain\", or the waveform \"sine\", \"bolus\" or \"roller\"".into(),
-        );
-    }
+    check_strain_control(drive, "a table sets", context)?;
     if RadiusTable::new(&drive.phases, &drive.radii).is_none() {
         let message = match (drive.phases.len(), drive.radii.len()) {
             (0, 0) => "the table of the wave is missing".into(),
@@ -110,7 +108,7 @@ fn check_table(drive: &Drive, context: &mut Context<'_>) -> Option<()> {
             (points, _) => format!("these {points} points are no curve over a wavelength"),
         };
         return context.refuse(
-            kind,
+            ProblemKind::Inconsistent,
             &["drive.phases", "drive.radii", "drive.waveform"],
             message,
             format!(

@@ -7,7 +7,6 @@ use glam::DVec3;
 use peristalsis_physics::real::Real;
 
 use super::larger;
-use super::rows::Found;
 use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::{Machine, Work};
@@ -26,6 +25,31 @@ pub(crate) struct PairRule<'a, F: Fn(usize, usize) -> bool> {
     pub(crate) grains: usize,
     /// Which pairs i < j of spheres of the wall can have a contact at all.
     pub(crate) admits: F,
+}
+
+/// Partners of some spheres, in no order.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Found {
+    pub(super) partner: Vec<u32>,
+    /// Each of the spheres, and where its partners end.
+    pub(super) ends: Vec<(u32, u32)>,
+}
+
+impl Found {
+    /// Keeps the pairs i < j that `admits` admits.
+    pub(super) fn retain(&mut self, admits: impl Fn(usize, usize) -> bool) {
+        let (mut begin, mut kept) = (0, 0);
+        for (i, end) in &mut self.ends {
+            for at in begin..*end as usize {
+                let j = self.partner[at];
+                self.partner[kept] = j;
+                kept += usize::from(admits(*i as usize, j as usize));
+            }
+            begin = *end as usize;
+            *end = kept as u32;
+        }
+        self.partner.truncate(kept);
+    }
 }
 
 /// Some cells, whose spheres' partners are searched for.

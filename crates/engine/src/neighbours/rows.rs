@@ -15,14 +15,6 @@ pub(super) struct Rows {
     pub(super) partner: Vec<u32>,
 }
 
-/// Partners of some spheres, in no order.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Found {
-    pub(super) partner: Vec<u32>,
-    /// Each of the spheres, and where its partners end.
-    pub(super) ends: Vec<(u32, u32)>,
-}
-
 /// Room to collect rows in.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Collecting {
@@ -30,23 +22,6 @@ pub(super) struct Collecting {
     whence: Vec<(u32, u32)>,
     /// Rows for threads to share.
     stretches: Vec<Range<usize>>,
-}
-
-impl Found {
-    /// Keeps the pairs i < j that `admits` admits.
-    pub(super) fn retain(&mut self, admits: impl Fn(usize, usize) -> bool) {
-        let (mut begin, mut kept) = (0, 0);
-        for (i, end) in &mut self.ends {
-            for at in begin..*end as usize {
-                let j = self.partner[at];
-                self.partner[kept] = j;
-                kept += usize::from(admits(*i as usize, j as usize));
-            }
-            begin = *end as usize;
-            *end = kept as u32;
-        }
-        self.partner.truncate(kept);
-    }
 }
 
 impl Rows {

@@ -238,8 +238,7 @@ impl PrescribedWall {
     fn for_each_touching(&self, centre: DVec3, reach: f64, touch: impl FnMut(u32, DVec3, DVec3)) {
         match &self.spheres {
             WallSpheres::Rings(rings) => {
-                let narrowest = self.wave.mean_radius - self.wave.amplitude.abs();
-                rings.for_each_touching(centre, reach, narrowest, touch);
+                rings.for_each_touching(centre, reach, self.wave.throat_radius(), touch);
             }
             WallSpheres::Scattered(scattered) => {
                 scattered.for_each_touching(centre, reach, &self.wave, &self.now, touch);

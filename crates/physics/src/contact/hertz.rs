@@ -180,10 +180,10 @@ impl NormalLaw for ViscoelasticHertz {
     }
 
     /// xi = (5 m_ij v^2/(4 K))^(2/5), K = 2 Y R_ij^(1/2)/(3 (1 - nu^2))
-    fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64 {
-        let stiffness = 2.0 * self.young_modulus * reduced_radius.sqrt()
-            / (3.0 * (1.0 - self.poisson_ratio * self.poisson_ratio));
-        libm::pow(1.25 * reduced_mass * speed * speed / stiffness, 0.4)
+    fn impact_overlap(&self, impact: Impact) -> f64 {
+        let stiffness = self.modulus() * impact.reduced_radius.sqrt();
+        let energy = impact.reduced_mass * impact.speed * impact.speed;
+        libm::pow(1.25 * energy / stiffness, 0.4)
     }
 
     /// By integration of the impact, which depends on s = B v/l alone, l = (m_ij v^2/K)^(2/5); at rest the limit of slow
@@ -271,9 +271,8 @@ mod tests {
 
     #[test]
     fn an_impact_stores_its_kinetic_energy() {
-        let (reduced_mass, speed) = (0.5, 0.02);
-        let overlap = LAW.impact_overlap(reduced_mass, speed, 0.25);
+        let overlap = LAW.impact_overlap(Impact::of_twins(1.0, 0.02));
         let stored = LAW.force(overlap, 0.0, 0.25).energy;
-        assert!((stored / (0.5 * reduced_mass * speed * speed) - 1.0).abs() < 1e-12);
+        assert!((stored / (0.5 * 0.5 * 0.02 * 0.02) - 1.0).abs() < 1e-12);
     }
 }

@@ -104,8 +104,8 @@ impl NormalLaw for LinearSpringDashpot {
     }
 
     /// xi = v (m_ij/k)^(1/2)
-    fn impact_overlap(&self, reduced_mass: f64, speed: f64, _reduced_radius: f64) -> f64 {
-        speed * (reduced_mass / self.normal_stiffness).sqrt()
+    fn impact_overlap(&self, impact: Impact) -> f64 {
+        impact.speed * (impact.reduced_mass / self.normal_stiffness).sqrt()
     }
 
     /// At any speed: e = exp(-pi beta/sqrt(omega_0^2 - beta^2)), see [`LinearSpringDashpot::restitution`].
@@ -149,7 +149,7 @@ mod tests {
         );
         assert_eq!(LAW.stiffness(0.1, 0.25), 2.0);
         // m v^2/2 = k xi^2/2
-        assert!((LAW.impact_overlap(0.5, 0.1, 0.25) - 0.05).abs() < 1e-15);
+        assert!((LAW.impact_overlap(Impact::of_twins(1.0, 0.1)) - 0.05).abs() < 1e-15);
     }
 
     #[test]

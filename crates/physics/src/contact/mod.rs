@@ -155,8 +155,8 @@ pub trait NormalLaw: Copy + Sync {
     /// The parameter that scales the elastic force.
     fn elasticity(&self) -> Elasticity;
 
-    /// Largest overlap of an impact along the normal at relative speed `speed`, without dissipation \[d\].
-    fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64;
+    /// Largest overlap of an impact along the normal, without dissipation \[d\].
+    fn impact_overlap(&self, impact: Impact) -> f64;
 
     /// Restitution and duration of an impact along the normal.
     fn rebound(&self, impact: Impact) -> Rebound;

@@ -53,8 +53,8 @@ impl NormalLaw for Normal {
         with_normal_law!(self, law => law.elasticity())
     }
 
-    fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64 {
-        with_normal_law!(self, law => law.impact_overlap(reduced_mass, speed, reduced_radius))
+    fn impact_overlap(&self, impact: Impact) -> f64 {
+        with_normal_law!(self, law => law.impact_overlap(impact))
     }
 
     fn rebound(&self, impact: Impact) -> Rebound {

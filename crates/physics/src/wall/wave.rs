@@ -116,6 +116,17 @@ impl RadiusWave {
         self.mean_radius + self.amplitude * value
     }
 
+    /// a - |b|: the least R anywhere, at any time \[d\].
+    #[inline]
+    pub fn throat_radius(&self) -> f64 {
+        self.mean_radius - self.amplitude.abs()
+    }
+
+    /// a + |b| g, g the [largest](Contraction::largest) contraction: the largest R anywhere, at any time \[d\].
+    pub fn belly_radius(&self) -> f64 {
+        self.mean_radius + self.amplitude.abs() * self.contraction.largest()
+    }
+
     /// Least R anywhere now \[d\].
     pub fn narrowest(&self, cycles: f64) -> f64 {
         let depth = match &self.contraction {

@@ -642,7 +642,7 @@ class Summary(_Rare):
     newtonian_flow_rate_ratio: float | None
     """J/Jmax of a Newtonian fluid in this tube, phi = b/a"""
     newtonian_flow_rate_ratio_clear_bore: float | None
-    """the same for the clear bore, phi = b/(a - d/2)"""
+    """the same for the clear bore, phi = b/(a - d_w/2)"""
     escaped: int
     """grains outside the tube at the end"""
     escaped_most: int

@@ -3,12 +3,14 @@
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
+use peristalsis_analysis::number::rounded;
 use peristalsis_configuration::document::{self, Table};
 use peristalsis_configuration::{
     Configuration, ConfigurationError, Grains, MATERIALS, MOST_GRAINS, Material, Observe, Problem,
-    ProblemKind, Problems, SourceFile, check_against, file_with_overrides, grain_mass, material,
-    schema_of,
+    ProblemKind, Problems, SourceFile, WaveformName, check_against, file_with_overrides,
+    grain_mass, material, schema_of, word,
 };
+use peristalsis_physics::wall::Waveform;
 use peristalsis_run::{longest_time_step, samples_that_meet};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -20,6 +22,14 @@ const OVERLAP_OF_AN_IMPACT: f64 = 0.02;
 const OVERLAP_OF_A_LOAD: f64 = 0.01;
 /// Wall spheres a ring for each diameter of the largest radius, and rings for each diameter of the wavelength: fewer leak.
 const WALL_SPHERES: [f64; 2] = [7.5, 1.3];
+
+/// Waveforms that a design may have.
+const WAVEFORMS: [WaveformName; 4] = [
+    WaveformName::Sine,
+    WaveformName::Bolus,
+    WaveformName::Roller,
+    WaveformName::Segments,
+];
 
 /// A peristaltic pump for grains, in SI.
 #[derive(Deserialize, JsonSchema)]
@@ -104,9 +114,9 @@ struct DriveKeys {
     #[schemars(extend("x-unit" = "Hz", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     frequency: f64,
     /// Shape of the wave: sine, bolus (one smooth squeeze), roller, or segments that close in turn.
-    #[serde(default = "sine")]
-    #[schemars(extend("enum" = ["sine", "bolus", "roller", "segments"]))]
-    waveform: String,
+    #[serde(default)]
+    #[schemars(with = "String", extend("enum" = WAVEFORMS.map(word)))]
+    waveform: WaveformName,
     /// Segments a wavelength, with waveform = "segments".
     #[schemars(extend("x-unit" = "1", "minimum" = 2, "maximum" = 32))]
     segments: Option<u32>,
@@ -119,10 +129,6 @@ struct DriveKeys {
     #[serde(default = "ten")]
     #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     periods: f64,
-}
-
-fn sine() -> String {
-    "sine".to_owned()
 }
 
 fn ten() -> f64 {
@@ -175,7 +181,7 @@ pub fn configuration_text(
     // Contacts of small grains among large ones are short.
     let longest = longest_time_step(&configuration);
     if configuration.run.time_step > longest {
-        text += &format!("time_step = {:?}\n", three_digits(0.99 * longest));
+        text += &format!("time_step = {:?}\n", rounded(0.99 * longest, 3));
         read(&text)?;
     }
     Ok(text)
@@ -234,13 +240,13 @@ fn check_together(keys: &Keys, table: &Table, problems: &mut Problems) {
             "lengths are in metres: 8 mm are 8e-3",
         );
     }
-    if drive.segments.is_some() && drive.waveform != "segments" {
+    if drive.segments.is_some() && drive.waveform != WaveformName::Segments {
         refuse(
             ProblemKind::Conflict,
             "drive.segments",
             format!(
                 "drive.segments belongs to drive.waveform = \"segments\", but here it is {:?}",
-                drive.waveform
+                word(drive.waveform)
             ),
             "remove drive.segments, or set drive.waveform = \"segments\"",
         );
@@ -291,11 +297,6 @@ fn component(value: f64) -> f64 {
     if value.abs() < 1e-15 { 0.0 } else { value }
 }
 
-/// A number with three digits.
-fn three_digits(value: f64) -> f64 {
-    format!("{value:.2e}").parse().unwrap_or(value)
-}
-
 fn written(keys: &Keys, name: &str) -> String {
     let (grain, tube, drive) = (&keys.grain, &keys.tube, &keys.drive);
     let d = grain.diameter;
@@ -306,7 +307,7 @@ fn written(keys: &Keys, name: &str) -> String {
     let density = of(grain.density, |it| it.density);
     let stiffness = grain
         .stiffness
-        .unwrap_or_else(|| three_digits(stiffness(keys, density)));
+        .unwrap_or_else(|| rounded(stiffness(keys, density), 3));
     let bore = tube.diameter / d;
     // Half a wall sphere is within the radius on either side.
     let radius = 0.5 * (bore + 1.0);
@@ -314,12 +315,11 @@ fn written(keys: &Keys, name: &str) -> String {
     let wavelength = tube.wavelength / d;
     let (waves, sizes) = (waves(tube), sizes(grain));
     let number = number_of_grains(keys);
-    let widest = match drive.waveform.as_str() {
-        "sine" => 2.0 * radius - 0.5 * width,
-        _ => radius,
-    };
+    // a + b g, g the largest contraction and b = a - w/2.
+    let largest = drive.waveform.travelling().map_or(0.0, Waveform::largest);
+    let widest = (1.0 + largest) * radius - 0.5 * largest * width;
     let segments = drive.segments.unwrap_or(4);
-    let is_segmented = drive.waveform == "segments";
+    let is_segmented = drive.waveform == WaveformName::Segments;
     let least_rings = if is_segmented { 2 * segments } else { 2 };
     let ring = (WALL_SPHERES[0] * widest).ceil().max(6.0);
     let rings = 2.0 * (0.5 * WALL_SPHERES[1] * wavelength).ceil();
@@ -350,7 +350,9 @@ fn written(keys: &Keys, name: &str) -> String {
          [tube]\nradius = {radius:?}\nwavelength = {wavelength:?}\nwaves = {waves}\nspheres_per_ring = {ring}\n\
          rings_per_wave = {rings}\n\n\
          [drive]\ncontrol = \"strain\"\nwidth = {width:?}\nwaveform = {:?}\n",
-        sizes.diameter_min, sizes.diameter_max, drive.waveform
+        sizes.diameter_min,
+        sizes.diameter_max,
+        word(drive.waveform)
     );
     if is_segmented {
         text += &format!("segments = {segments}\n");

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
+use peristalsis_analysis::number;
 use peristalsis_configuration::{Configuration, InitialState, WaveformName};
 use peristalsis_formats::{FormatError, Table, Values, csv};
 use peristalsis_physics::wall::Arrangement;
@@ -108,8 +109,7 @@ pub fn encoded(points: &[Point]) -> Result<String, FormatError> {
 /// A number with three significant digits, at most four decimals.
 pub fn rounded(value: f64) -> f64 {
     let value = (1e4 * value).round() / 1e4;
-    let digits: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    digits + 0.0
+    number::rounded(value, 3) + 0.0
 }
 
 /// How far a tube is from a published point.

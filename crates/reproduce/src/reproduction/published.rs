@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use peristalsis_run::files;
-use peristalsis_study::{Identity, RowDifference, State, Store, StudyError};
+use peristalsis_study::{Identity, RESUMMED, RowDifference, State, Store, StudyError};
 
 use super::{Drawn, Work};
 
@@ -16,7 +16,7 @@ pub struct PublishedRows {
     pub rows: usize,
     /// Those whose runs were computed again, drawn at random or for what a row does not hold.
     pub checked: usize,
-    /// Of these, those that are the same but for columns that their program, an older one, is known to have computed otherwise.
+    /// Of these, those that are the same but for [`RESUMMED`] sums, which their program, an older one, added up in another order.
     pub older: usize,
     /// Of these, those that did not come out the same.
     pub differing: Vec<DifferingRow>,
@@ -56,8 +56,9 @@ pub fn published_in_words(all: &[PublishedRows], drawn: Option<&Drawn>) -> Optio
     let but = match older {
         0 => " to the bit".to_owned(),
         several => format!(
-            " to the bit, in {several} of them but for columns that an older program is known to have computed otherwise \
-             (flow_rate_ratio_variance and wall_pressure by rounding; an efficiency, belly_ in a flat belly)"
+            " to the bit, in {several} of them but for the last digits of sums that an older program added up in another \
+             order ({})",
+            RESUMMED.join(", ")
         ),
     };
     let mut words = format!(

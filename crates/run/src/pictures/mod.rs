@@ -4,7 +4,7 @@ mod discharge;
 mod profile;
 mod snapshot;
 
-use peristalsis_analysis::number::{decimal, plain, with_error};
+use peristalsis_analysis::number::{decimal, plain, rounded, with_error};
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter, WaveformName, word};
 use peristalsis_figures::chart::{
     Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
@@ -153,10 +153,12 @@ fn scheduled_value(
 
 /// A number as it was given, with up to six digits; what SI has made of one, with three.
 fn short(value: f64) -> String {
-    let with = |digits: usize| format!("{value:.0$e}", digits - 1).parse().unwrap_or(value);
-    let given: f64 = with(6);
-    let made: f64 = with(3);
-    if given == value { given } else { made }.to_string()
+    let given = rounded(value, 6);
+    if given == value {
+        given.to_string()
+    } else {
+        rounded(value, 3).to_string()
+    }
 }
 
 fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
@@ -279,7 +281,7 @@ fn newtonian_fluid(summary: &Summary, last: f64) -> Vec<Line> {
     let load = summary.pumping.as_ref().map_or("", |_| " without load");
     let name = format!("Newtonian fluid{load} (Shapiro et al. 1969), *φ* = *b*/*a*");
     let in_bore = level(bore, &name, Pattern::Dashed);
-    let name = "the same, clear bore, *φ* = *b*/(*a* − *d*/2)";
+    let name = "the same, clear bore, *φ* = *b*/(*a* − *d*_{w}/2)";
     let in_clear_bore = level(clear_bore.flatten(), name, Pattern::DashDotted);
     in_bore.into_iter().chain(in_clear_bore).collect()
 }

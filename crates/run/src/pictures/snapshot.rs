@@ -1,5 +1,6 @@
 //! Runs from the side.
 
+use peristalsis_analysis::number::rounded;
 use peristalsis_figures::{
     Drawing, FigureError, Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall,
     Width,
@@ -84,8 +85,7 @@ fn unit_of_speed(runs: &[(&str, &Run)]) -> (String, Option<f64>) {
         return ("*c*".to_owned(), None);
     };
     let fastest = runs.iter().map(|(_, run)| largest_axial_speed(run));
-    let fastest = fastest.fold(0.0, f64::max);
-    let fastest = format!("{fastest:.1e}").parse().unwrap_or(fastest);
+    let fastest = rounded(fastest.fold(0.0, f64::max), 2);
     let time = units(still.configuration()).time();
     (format!("({fastest} *d*/{time})"), Some(fastest))
 }

@@ -66,7 +66,7 @@ pub(super) fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
     (after.0 - before.0) / (after.1 - before.1)
 }
 
-/// Late mean of what flows against the wave, over J: the mean of -J where J < 0, each over the time of a sample, \[1/t\].
+/// Late mean of what flows against the wave: of -J where J < 0 and else 0, each J over the time of a sample \[1/t\].
 pub(super) fn back_flow(late: &[Sample]) -> (f64, f64) {
     let back = |sample: &Sample| (-sample.flow_rate).max(0.0);
     (mean_of(late, back), error_of(late.iter().map(back)))

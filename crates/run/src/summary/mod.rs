@@ -60,7 +60,7 @@ pub struct Summary {
     pub transition_time: Option<f64>,
     /// tau \[t\] at each of [`THRESHOLDS`].
     transition_times: [Option<f64>; THRESHOLDS.len()],
-    /// J/Jmax of a Newtonian fluid in this tube without load: phi = b/a, and phi = b/(a - d/2) of the clear bore.
+    /// J/Jmax of a Newtonian fluid in this tube without load: phi = b/a, and phi = b/(a - d_w/2) of the clear bore.
     pub newtonian: Option<(f64, Option<f64>)>,
     /// Grains outside the tube at the end.
     pub escaped: u64,

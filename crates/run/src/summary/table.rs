@@ -136,7 +136,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("flow_rate_ratio_raw", "1", "late mean of J/Jmax of all grains", Real(|s| s.flow_rate_ratio_raw)).labelled("J/Jmax of all grains"),
     result("flow_rate", "1/t", "late mean of J", Real(Summary::flow_rate)).labelled("flow rate J"),
     result("newtonian_flow_rate_ratio", "1", "J/Jmax of a Newtonian fluid in this tube, phi = b/a", Optional(|s| s.newtonian.map(|fluid| fluid.0))).labelled("J/Jmax of a Newtonian fluid"),
-    result("newtonian_flow_rate_ratio_clear_bore", "1", "the same for the clear bore, phi = b/(a - d/2)", Optional(|s| s.newtonian.and_then(|fluid| fluid.1))).labelled("J/Jmax of a Newtonian fluid, clear bore"),
+    result("newtonian_flow_rate_ratio_clear_bore", "1", "the same for the clear bore, phi = b/(a - d_w/2)", Optional(|s| s.newtonian.and_then(|fluid| fluid.1))).labelled("J/Jmax of a Newtonian fluid, clear bore"),
     result("escaped", "1", "grains outside the tube at the end", Whole(|s| s.escaped)).labelled("escaped grains"),
     result("escaped_most", "1", "most grains outside the tube at any sample", Whole(|s| s.escaped_most)).labelled("most escaped grains"),
     result("largest_overlap", "d", "largest overlap of a grain's contact at any step", Real(|s| s.largest_overlap)).labelled("largest overlap"),

@@ -102,11 +102,11 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
         let lattice = wall.lattice();
         warnings.extend(lattice.and_then(|lattice| leaking::warning(&hardest, wave, lattice)));
         warnings.extend(leaking::bare_stretch(&hardest));
-        let opening = 2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.sphere_diameter();
+        let opening = 2.0 * wave.throat_radius() - wall.sphere_diameter();
         if opening <= 0.0 {
             let led = configuration.drive.schedule(ScheduledParameter::Width);
             let key = led.map_or("drive.width", |_| "drive.schedule");
-            let closes = "the tube closes on itself: the clear opening of the bottleneck, w - d";
+            let closes = "the tube closes on itself: the clear opening of the bottleneck, w - d_w";
             let message = match configuration.tube.arrangement {
                 Arrangement::Smooth => format!(
                     "{closes}, is {opening:.2}; a grain that it closes on is pressed into the wall by up to {:.2} d on \

@@ -3,7 +3,7 @@
 use peristalsis_configuration::{
     Body, Configuration, Control, Elasticity, ScheduledParameter, Units, elasticity_key,
 };
-use peristalsis_physics::contact::NormalLaw;
+use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use super::warning::Warning;
 
@@ -19,11 +19,8 @@ const MOST_STEPS_PER_PERIOD: f64 = 1e6;
 /// The kinetic energy of the relative motion, (m/2) c^2/2, is stored at the turning point.
 pub fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
     let diameter = configuration.grains.diameter_max;
-    let mass = diameter * diameter * diameter;
-    let speed = configuration.wave_speed();
-    let law = configuration.contact.normal;
-    let overlap = law.impact_overlap(0.5 * mass, speed, 0.25 * diameter);
-    overlap / diameter
+    let impact = Impact::of_twins(diameter, configuration.wave_speed());
+    configuration.contact.normal.impact_overlap(impact) / diameter
 }
 
 /// Warnings about grains that are too soft for the fastest wave, with units in SI.

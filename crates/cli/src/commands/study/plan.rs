@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use peristalsis_analysis::number::bytes;
 use peristalsis_engine::processors;
 use peristalsis_study::{Specification, State, Store, StudyEstimate, study_estimate};
 use serde_json::json;
@@ -94,14 +95,4 @@ fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) ->
         ));
     }
     lines.join("\n") + "\n"
-}
-
-/// A number of bytes in words.
-fn bytes(number: f64) -> String {
-    for (factor, unit) in [(1e12, "TB"), (1e9, "GB"), (1e6, "MB")] {
-        if number >= factor {
-            return format!("{:.1} {unit}", number / factor);
-        }
-    }
-    format!("{:.0} kB", number / 1e3)
 }

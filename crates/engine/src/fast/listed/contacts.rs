@@ -3,11 +3,11 @@
 use peristalsis_physics::contact::{Contact, ContactForce, ContactLaw, NormalLaw};
 use peristalsis_physics::real::Real;
 
-use super::book::RowTerms;
 use super::history::PackedHistory;
 use super::pairs::Pairs;
 use super::record::{self, Record};
 use super::spheres::{Forces, Moving, Own};
+use super::terms::RowTerms;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work, bring_near, eight_of, eight_of_each};
 use crate::fast::sums::Sums;

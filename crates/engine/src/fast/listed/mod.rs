@@ -17,6 +17,7 @@ mod pairs;
 mod record;
 mod section;
 mod spheres;
+mod terms;
 
 use core::ops::Range;
 

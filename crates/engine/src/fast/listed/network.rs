@@ -5,9 +5,9 @@
 
 use peristalsis_physics::real::{Real, Vector};
 
-use super::book::{Book, WallTerms};
 use super::record::{self, Record};
 use super::spheres::Moving;
+use super::terms::{Book, WallTerms};
 use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};

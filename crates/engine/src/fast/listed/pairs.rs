@@ -7,10 +7,10 @@ use core::ops::Range;
 
 use peristalsis_physics::real::Real;
 
-use super::book::RowTerms;
 use super::history::{Memory, Packed, PackedHistory};
 use super::record::{self, Record};
 use super::spheres::{Own, Spheres};
+use super::terms::RowTerms;
 use crate::fast::lanes::{LANES, Lanes, Quad};
 use crate::fast::machine::{Machine, Work, bring_near, eight_of};
 use crate::neighbours::Neighbours;

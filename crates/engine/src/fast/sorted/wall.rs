@@ -115,9 +115,7 @@ impl WallTable {
             }
             behind.next();
         }
-        let wave = wall.wave();
-        let amplitude = wave.amplitude.abs();
-        self.clear = (wave.mean_radius - amplitude - self.reach).max(0.0);
+        self.clear = (wall.wave().throat_radius() - self.reach).max(0.0);
     }
 
     /// How many rings can be within reach of a grain.

@@ -153,7 +153,7 @@ impl Scattered {
         mut touch: impl FnMut(u32, DVec3, DVec3),
     ) {
         let from_axis = (centre.x * centre.x + centre.y * centre.y).sqrt();
-        let narrowest = wave.mean_radius - wave.amplitude.abs();
+        let narrowest = wave.throat_radius();
         if from_axis + reach <= narrowest {
             return;
         }

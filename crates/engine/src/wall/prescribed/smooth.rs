@@ -86,7 +86,7 @@ impl Smooth {
         let overlaps = 0.5 * diameter + half;
         let reach = overlaps + range;
         let from_axis = position.truncate().length();
-        let narrowest = wave.mean_radius - wave.amplitude.abs();
+        let narrowest = wave.throat_radius();
         if from_axis + reach <= narrowest {
             return;
         }
@@ -243,10 +243,9 @@ fn narrowed(
 
 /// The lattice of beads as which a wall of this wave is drawn.
 pub(super) fn beads(wave: &RadiusWave, waves: u32) -> Lattice {
-    let widest = wave.mean_radius + wave.amplitude.abs() * wave.contraction.largest();
     let many = |length: f64| (length / (BESIDE * BEAD)).ceil().clamp(6.0, 4096.0) as u32;
     Lattice {
-        spheres_per_ring: many(TAU * widest),
+        spheres_per_ring: many(TAU * wave.belly_radius()),
         rings_per_wave: many(wave.wavelength).next_multiple_of(2),
         waves,
         wavelength: wave.wavelength,

@@ -2,6 +2,7 @@
 
 use peristalsis_analysis::mean_and_error;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Pattern, Tint};
+use peristalsis_formats::Table;
 
 use super::plot::{curve, named_once, open_if, points};
 use crate::columns::Columns;
@@ -110,16 +111,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut rows = Vec::new();
     for height in [heights[0], heights[heights.len() - 1]] {
         let row = load(0.0, height, 1)?;
-        let found = row.load.apparent / row.load.filling;
-        let setting = format!("frictionless, {height} D");
-        let check = Check::relative(
-            "apparent mass over filling mass",
-            &setting,
-            1.0,
-            found,
-            0.01,
-        );
-        checks.push(check.by("hydrostatics"));
+        checks.push(hydrostatic(&row));
         rows.push(row);
     }
     let (mut told, mut curves) = (Vec::new(), Vec::new());
@@ -139,16 +131,11 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
             mean_and_error(&all.iter().map(value).collect::<Vec<_>>())
         };
         let (saturation, _) = of_all(|it| it.saturation);
-        for height in heights {
-            let at = |row: &&Row| row.column.height == *height;
-            let ratio = |row: &Row| row.load.apparent / janssen(row.load.filling, saturation);
-            let ratios: Vec<f64> = here.iter().filter(at).map(ratio).collect();
-            let (found, error) = mean_and_error(&ratios);
-            let setting = format!("mu = {friction}, {height} D");
-            let quantity = "apparent mass over that of the curve";
-            let check = Check::relative(quantity, &setting, 1.0, found, ALLOWED);
-            checks.push(check.by("one M_sat for all heights").with_error(error));
-        }
+        checks.extend(
+            heights
+                .iter()
+                .map(|height| on_curve(&here, friction, *height, saturation)),
+        );
         let (fitted, error) = of_all(|it| it.fitted);
         if friction == SLIDING {
             let quantity = "lambda of the curve, over D";
@@ -186,18 +173,40 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         ("rough_fitted", &told[1][4]),
     ]);
     finding.checks = checks;
-    finding.data = Some(
-        Columns::of(&rows)
-            .number("friction", "1", "mu", |row| row.column.friction)
-            .number("height", "D", "nominal", |row| row.column.height)
-            .number("seed", "", "number", |row| row.column.seed as f64)
-            .number("filling", "m", "M", |row| row.load.filling)
-            .number("apparent", "m", "M_app", |row| row.load.apparent)
-            .number("stress_ratio", "1", "K", |row| row.load.stress_ratio())
-            .table()?,
-    );
+    finding.data = Some(table(&rows)?);
     finding.figures = vec![PROSE.chart("janssen", &[], drawing(&rows, &curves))?];
     Ok(finding)
+}
+
+/// That without friction the floor bears the filling.
+fn hydrostatic(row: &Row) -> Check {
+    let found = row.load.apparent / row.load.filling;
+    let setting = format!("frictionless, {} D", row.column.height);
+    let quantity = "apparent mass over filling mass";
+    Check::relative(quantity, &setting, 1.0, found, 0.01).by("hydrostatics")
+}
+
+/// That the columns of a height, of these of one friction, are on the curve of M_sat.
+fn on_curve(rows: &[Row], friction: f64, height: f64, saturation: f64) -> Check {
+    let here = rows.iter().filter(|row| row.column.height == height);
+    let ratio = |row: &Row| row.load.apparent / janssen(row.load.filling, saturation);
+    let (found, error) = mean_and_error(&here.map(ratio).collect::<Vec<_>>());
+    let setting = format!("mu = {friction}, {height} D");
+    let quantity = "apparent mass over that of the curve";
+    let check = Check::relative(quantity, &setting, 1.0, found, ALLOWED);
+    check.by("one M_sat for all heights").with_error(error)
+}
+
+fn table(rows: &[Row]) -> Result<Table> {
+    let table = Columns::of(rows)
+        .number("friction", "1", "mu", |row| row.column.friction)
+        .number("height", "D", "nominal", |row| row.column.height)
+        .number("seed", "", "number", |row| row.column.seed as f64)
+        .number("filling", "m", "M", |row| row.load.filling)
+        .number("apparent", "m", "M_app", |row| row.load.apparent)
+        .number("stress_ratio", "1", "K", |row| row.load.stress_ratio())
+        .table()?;
+    Ok(table)
 }
 
 fn drawing(rows: &[Row], curves: &[(f64, f64)]) -> ChartFigure {

@@ -1,0 +1,47 @@
+//! The memory that a run takes.
+
+use peristalsis_configuration::{Configuration, Control};
+use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
+
+use crate::RunError;
+
+/// Bytes of the program itself with its figures.
+const BYTES_OF_PROGRAM: f64 = 3e7;
+/// Bytes of a frictionless grain in a prescribed tube, at most: while the grains of a dense tube are packed.
+const BYTES_OF_GRAIN: f64 = 2000.0;
+/// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered.
+const BYTES_WITH_CONTACTS: f64 = 4000.0;
+
+/// Grains, and spheres of an elastic wall.
+pub(crate) fn moving_spheres(configuration: &Configuration) -> u64 {
+    let of_wall = match configuration.drive.control {
+        Control::Strain { .. } => 0,
+        Control::Stress { .. } => configuration.tube.wall_spheres(),
+    };
+    configuration.grains.number.saturating_add(of_wall)
+}
+
+/// Bytes that a run takes at most, about: as measured of runs with many spheres and of runs with many samples.
+pub(crate) fn memory(configuration: &Configuration) -> f64 {
+    let waves = configuration.run.periods.unwrap_or(0.0) * f64::from(configuration.tube.waves);
+    let samples = configuration.run.samples as f64;
+    let of_sphere = if configuration.remembers_contacts() {
+        BYTES_WITH_CONTACTS
+    } else {
+        BYTES_OF_GRAIN
+    };
+    BYTES_OF_PROGRAM
+        + of_sphere * moving_spheres(configuration) as f64
+        + (size_of::<Sample>() as f64) * samples.min(MOST_ROWS as f64)
+        + (size_of::<WaveFlow>() as f64) * waves.min(MOST_ROWS as f64)
+}
+
+/// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end
+/// the program later, in the middle of its work.
+pub(crate) fn check_memory(configuration: &Configuration) -> Result<(), RunError> {
+    let spheres = moving_spheres(configuration);
+    let bytes = memory(configuration) as u64;
+    let mut room: Vec<u8> = Vec::new();
+    let given = room.try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX));
+    given.map_err(|_| RunError::NoMemory { spheres, bytes })
+}
