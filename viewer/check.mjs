@@ -28,9 +28,15 @@ const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
 const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
 
+/** Programs that were started: none outlives the checks. */
+const started = new Set();
+process.on("exit", () => started.forEach((it) => it.kill()));
+for (const signal of ["SIGINT", "SIGTERM"]) process.on(signal, () => process.exit(1));
+
 /** A viewer of the program. */
 async function serve(...view) {
   const served = spawn(program, ["view", ...view, "--saves", saves]);
+  started.add(served);
   const address = await new Promise((found, lost) => {
     served.stdout.once("data", (text) => found(String(text).trim()));
     served.once("exit", (code) => lost(new Error(`the program ended with ${code}`)));
@@ -179,6 +185,9 @@ async function checkPlaying(browser) {
   assert(still.edges > 0.005 && still.edges < 0.5, `edges cover ${still.edges} of the stage`);
   for (const driving of ["#save", "#again", "#live", "#onward", "#slider-friction"])
     assert(!(await page.isVisible(driving)), `${driving} is shown beside a recording`);
+  // Colours of contacts are for frames that have them.
+  const offered = await page.$$eval("#field option", (all) => all.map(({ value }) => value));
+  assert(offered.includes("axial") && !offered.includes("pressure") && !offered.includes("coordination"), String(offered));
 
   // Played at its speed, and halted.
   await page.click("#play");
@@ -290,6 +299,13 @@ async function checkLooks(browser) {
     assert((await pixels(page)).edges > 0.005);
     await page.locator("#play").click();
     await page.waitForTimeout(3000);
+    // What is driven has its column.
+    await page.click("#loop-csv");
+    await until(page, () => window.offered.size === 1);
+    const lines = (await page.evaluate(() => [...window.offered.values()][0].text())).trim().split("\n");
+    const [head, row] = [lines[0], lines.at(-1)].map((line) => line.split(","));
+    assert.deepEqual(head.slice(0, 4), ["period", "force_amplitude", "strain_rate", "friction"]);
+    assert(row.length === head.length && Number(row[3]) > 0, String(row));
     await looks(page);
     for (const look of ["glass", "closed", "hidden", "cut open"]) {
       await page.selectOption("#wall", look);
@@ -357,7 +373,8 @@ async function checkStudy(browser) {
   // A pointer, and the keys, tell a point's number with its error.
   await page.mouse.move(...curves.places[4]);
   await until(page, () => !document.getElementById("tip").hidden);
-  assert.match(await page.textContent("#tip"), /±.*replicates2/s);
+  assert.match(await page.textContent("#tip"), /J\s?\/\s?J.*: .*±.*replicates2/s);
+  assert.match(await page.textContent("#point-value"), /J\s?\/\s?J.*: .*±/);
   assert.equal(await page.locator("#runs a").count(), 2);
   await shoot(page, "study-curves");
   await page.focus("#charts canvas");

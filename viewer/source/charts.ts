@@ -105,6 +105,13 @@ export const written = (value: number, digits = 3): string => {
   return `${plain === "1" ? "" : plain === "−1" ? "−" : `${plain}·`}${powerOfTen(Number(power))}`;
 };
 
+/** Ticks with their names, with as many digits as tell each from the next. */
+function named(ticks: number[]): [number, string][] {
+  const step = Math.min(...ticks.slice(1).map((tick, k) => tick - ticks[k]));
+  const digits = Math.floor(Math.log10(Math.max(...ticks.map(Math.abs))) + 1e-9) - Math.floor(Math.log10(step) + 1e-9) + 1;
+  return ticks.map((tick) => [tick, written(tick, Math.min(12, Math.max(3, digits || 3)))]);
+}
+
 /** How a chart is laid out, where it is not a small one beside the tube. */
 export interface Layout {
   left?: number;
@@ -131,9 +138,9 @@ export class Chart {
   x = new Axis(0, 1, 0, 1);
   y = new Axis(0, 1, 0, 1);
 
-  /** `instead` takes the place of the canvas's own context, to draw into a file. */
-  constructor(readonly canvas: HTMLCanvasElement, private readonly instead?: CanvasRenderingContext2D) {
-    const context = instead ?? canvas.getContext("2d");
+  /** `file` takes the place of the canvas's own context and size, to draw into a file. */
+  constructor(readonly canvas: HTMLCanvasElement, private readonly file?: { context: CanvasRenderingContext2D; width: number; height: number }) {
+    const context = file?.context ?? canvas.getContext("2d");
     if (!context) throw new Error("this browser draws no canvas");
     this.context = context;
   }
@@ -142,37 +149,40 @@ export class Chart {
   begin(x: [number, number], y: [number, number], labels: [string, string], colours: Ink, layout: Layout = {}): void {
     const { canvas, context } = this;
     const density = Math.min(3, devicePixelRatio);
-    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-    if (!this.instead) {
+    const { width, height } = this.file ?? { width: canvas.clientWidth, height: canvas.clientHeight };
+    if (!this.file) {
       if (canvas.width !== Math.round(width * density)) canvas.width = Math.round(width * density);
       if (canvas.height !== Math.round(height * density)) canvas.height = Math.round(height * density);
       context.setTransform(density, 0, 0, density, 0, 0);
       context.clearRect(0, 0, width, height);
     }
     context.font = "11px system-ui, sans-serif";
-    const left = layout.left ?? 38;
-    const above = this.legend(layout.legend ?? [], labels[1], width, colours);
-    this.box = { left, top: above, width: width - left - 12, height: height - above - 30 };
-    const { top, width: across, height: high } = this.box;
-    this.x = new Axis(...x, left, left + across);
+    const top = this.legend(layout.legend ?? [], labels[1], width, colours);
+    const high = height - top - 30;
     this.y = new Axis(...y, top + high, top, layout.logarithmic);
+    const up = layout.scaled === false ? [] : named(this.y.ticks(high / 34));
+    const wide = (text: string) => context.measureText(text).width;
+    const left = layout.left ?? Math.max(38, ...up.map(([, text]) => wide(text) + 10));
+    const across = width - left - 12;
+    this.box = { left, top, width: across, height: high };
+    this.x = new Axis(...x, left, left + across);
     context.lineWidth = 1;
     context.fillStyle = colours.faint;
     context.textAlign = "center";
     context.textBaseline = "top";
     // Numbers that are long have fewer ticks.
-    const wide = Math.max(60, ...this.x.ticks(across / 60).map((tick) => context.measureText(written(tick)).width + 24));
-    for (const tick of this.x.ticks(across / wide)) {
+    const apart = Math.max(60, ...named(this.x.ticks(across / 60)).map(([, text]) => wide(text) + 24));
+    for (const [tick, text] of named(this.x.ticks(across / apart))) {
       context.strokeStyle = colours.line;
       this.line(this.x.at(tick), top, this.x.at(tick), top + high);
-      context.fillText(written(tick), this.x.at(tick), top + high + 5);
+      context.fillText(text, this.x.at(tick), top + high + 5);
     }
     context.textAlign = "right";
     context.textBaseline = "middle";
-    for (const tick of layout.scaled === false ? [] : this.y.ticks(high / 34)) {
+    for (const [tick, text] of up) {
       context.strokeStyle = colours.line;
       this.line(left, this.y.at(tick), left + across, this.y.at(tick));
-      context.fillText(written(tick), left - 6, this.y.at(tick));
+      context.fillText(text, left - 6, this.y.at(tick));
     }
     context.fillStyle = colours.text;
     context.textAlign = "left";

@@ -3,10 +3,10 @@ import { written } from "./charts";
 import { type Colour, colourAt, css, type Field, stops } from "./fields";
 import { element } from "./page";
 
-/** The colours of the grains, by lightness alone or with marks for the sign, and those of the forces up to the largest. */
-export function showField(field: Field, lightness: boolean, marks: boolean, force: number | null): void {
+/** The colours of the grains, or that there are none, by lightness alone or with marks for the sign, and those of the forces up to the largest. */
+export function showField(field: Field, isLacking: boolean, lightness: boolean, marks: boolean, force: number | null): void {
   element("bar").style.background = gradient(stops(field, lightness));
-  element("bar-name").textContent = field.name;
+  element("bar-name").textContent = isLacking ? `${field.name}: not kept of this time` : field.name;
   element("bar-from").textContent = field.ends[0];
   element("bar-to").textContent = field.ends[1];
   element("bar-middle").textContent = field.diverging ? "0" : "";

@@ -91,7 +91,7 @@ export const FIELDS: Record<string, Field> = {
     diverging: false,
     ofContacts: true,
     values(frame, _, into) {
-      into.fill(0);
+      into.fill(lacks(this, frame) ? NaN : 0);
       eachContact(frame, (grain) => (into[grain] += 1 / 12));
     },
   },
@@ -100,12 +100,14 @@ export const FIELDS: Record<string, Field> = {
     ends: ["0", "p"],
     diverging: false,
     ofContacts: true,
-    values(frame, _, into) {
+    values(frame, tube, into) {
+      if (lacks(this, frame)) return void into.fill(NaN);
       // Sum of f r/(3 V), V = pi d^3/6 and r = d/2: f/(pi d^2).
       into.fill(0);
       eachContact(frame, (grain, force) => (into[grain] += force / (Math.PI * frame.diameter[grain] ** 2)));
       const largest = into.slice().sort()[Math.floor(COVERED * (into.length - 1))];
-      usual += 0.05 * (largest - usual) || largest;
+      if (scaled !== tube) [scaled, usual] = [tube, 0];
+      usual = usual > 0 ? usual + 0.05 * (largest - usual) : largest;
       this.ends[1] = `${written(usual, 2)} m/(d t²)`;
       for (let i = 0; i < into.length; i++) into[i] /= usual || 1;
     },
@@ -120,8 +122,13 @@ export const FIELDS: Record<string, Field> = {
   },
 };
 
-/** The pressure that the colours reach to, which follows slowly. */
+/** The pressure that the colours reach to, which follows slowly, and the tube that it is of. */
 let usual = 0;
+let scaled: Welcome | null = null;
+
+/** Whether a frame has not the contacts that a field is made of. */
+export const lacks = ({ ofContacts }: Field, { contacts, sample }: Frame): boolean =>
+  ofContacts === true && contacts === 0 && sample?.contacts !== 0;
 
 /** Each contact from the side of each of its grains. */
 function eachContact({ touching, contacts }: Frame, see: (grain: number, force: number) => void): void {

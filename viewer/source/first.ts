@@ -10,7 +10,7 @@ export function firstQuantity({ quantities, study }: Results): string {
     [/transition time|lifetime|time until/, "transition_time"],
     [/pumping/, "pumping_efficiency"],
     [/fluctuation/, "flow_rate_ratio_variance"],
-    [/discharge/, "discharge_rate"],
+    [/discharge|silo|outlet/, "discharge_rate"],
   ];
   for (const [words, name] of about) if (words.test(title) && quantities.some((it) => it.name === name)) return name;
   return quantities.at(0)?.name ?? "";

@@ -40,8 +40,10 @@ export function listenToKeys(acts: Actions): void {
       (target instanceof HTMLInputElement && target.type !== "checkbox");
     if (typing || event.ctrlKey || event.metaKey || event.altKey || document.querySelector("dialog[open]")) return;
     const action = actions[event.key];
-    const own = target instanceof HTMLButtonElement || target instanceof HTMLInputElement || target instanceof HTMLAnchorElement;
-    if (!action || (event.key === " " && own)) return;
+    const isIn = (places: string) => target instanceof Element && target.closest(places) !== null;
+    // What a key does by itself there: space presses, arrows scroll.
+    const own = event.key === " " ? "button, input, a, summary" : event.key.startsWith("Arrow") ? ".panel, .chapters" : "";
+    if (!action || (own && isIn(own))) return;
     event.preventDefault();
     action(event);
     acts.done();

@@ -1,5 +1,5 @@
 import { FIELDS } from "./fields";
-import { element } from "./page";
+import { element, options } from "./page";
 import { type Scene, WALLS, type WallLook } from "./scene";
 
 /** What is done when the looks are changed. */
@@ -13,8 +13,7 @@ export interface Looks {
 /** The choices of colours, wall and marks. */
 export function listenToLooks(field: string, looks: Looks): void {
   const fields = element<HTMLSelectElement>("field");
-  for (const [key, { name }] of Object.entries(FIELDS)) fields.add(new Option(name, key));
-  fields.value = field;
+  offer(field, false);
   fields.onchange = () => looks.field(fields.value);
   const walls = element<HTMLSelectElement>("wall");
   for (const look of WALLS) walls.add(new Option(look, look));
@@ -29,6 +28,12 @@ export function listenToLooks(field: string, looks: Looks): void {
   tick("lightness", (on) => looks.scene((scene) => (scene.lightness = on)));
   tick("ride", looks.ride);
   tick("follow", looks.follow);
+}
+
+/** Offers the colours that there are: a recording has no contacts. */
+export function offer(field: string, recorded: boolean): void {
+  const offered = Object.entries(FIELDS).filter(([, { ofContacts }]) => !(recorded && ofContacts));
+  options("field", offered.map(([name, { name: label }]) => ({ name, label })), field);
 }
 
 /** Closes the menu by a press elsewhere, and by escape before that key does anything else. */

@@ -9,6 +9,10 @@ import { type Driving, type Span, type Thresholds, thresholds } from "./threshol
 /** Small steps that a threshold which is marked in the loop may lie between. */
 const MARKED = 5;
 
+/** The size of the loop as a file, and how many pixels of a picture are one of it. */
+const SIZE = { width: 900, height: 560 };
+const FINE = 2;
+
 /** What the loop is drawn against. */
 export interface Across extends Driving {
   name: string;
@@ -130,16 +134,32 @@ function drawCourse(chart: Chart, rows: FilmRow[], { of }: Across, colours: Ink)
 
 /** Gives the loop as a file. */
 export function giveLoop(kind: "png" | "svg" | "csv", { canvas }: Chart, film: Film, tube: Welcome, frame: Frame): void {
-  if (kind === "png") return canvas.toBlob((file) => file && download("loop.png", file));
   if (kind === "csv") return download("loop.csv", new Blob([asTable(film.rows, tube)], { type: "text/csv" }));
-  const svg = new SvgContext(canvas.clientWidth, canvas.clientHeight, ink().back);
-  drawLoop(new Chart(canvas, svg as unknown as CanvasRenderingContext2D), film, tube, frame, ink());
+  const draw = (context: CanvasRenderingContext2D) => drawLoop(new Chart(canvas, { context, ...SIZE }), film, tube, frame, ink());
+  if (kind === "png") return drawPicture(draw);
+  const svg = new SvgContext(SIZE.width, SIZE.height, ink().back);
+  draw(svg as unknown as CanvasRenderingContext2D);
   download("loop.svg", new Blob([String(svg)], { type: "image/svg+xml" }));
+}
+
+function drawPicture(draw: (context: CanvasRenderingContext2D) => void): void {
+  const picture = document.createElement("canvas");
+  [picture.width, picture.height] = [FINE * SIZE.width, FINE * SIZE.height];
+  const context = picture.getContext("2d");
+  if (!context) return;
+  context.scale(FINE, FINE);
+  context.fillStyle = ink().back;
+  context.fillRect(0, 0, SIZE.width, SIZE.height);
+  draw(context);
+  picture.toBlob((file) => file && download("loop.png", file));
 }
 
 /** The course as a table. */
 function asTable(rows: FilmRow[], tube: Welcome): string {
   const amplitude = tube.control === "strain" ? "width" : "force_amplitude";
-  const lines = rows.map((row) => [row.clock, row.amplitude, row.strain_rate, row.flow_rate_ratio, Number.isFinite(row.average) ? row.average : null].join(","));
-  return [`period,${amplitude},strain_rate,flow_rate_ratio,flow_rate_ratio_mean_of_a_period`, ...lines, ""].join("\n");
+  const driven: [string, keyof FilmRow][] = [[amplitude, "amplitude"], ["strain_rate", "strain_rate"]];
+  if (rows.some(({ friction }) => friction !== null)) driven.push(["friction", "friction"]);
+  const lines = rows.map((row) =>
+    [row.clock, ...driven.map(([, key]) => row[key]), row.flow_rate_ratio, Number.isFinite(row.average) ? row.average : null].join(","));
+  return [["period", ...driven.map(([name]) => name), "flow_rate_ratio", "flow_rate_ratio_mean_of_a_period"].join(","), ...lines, ""].join("\n");
 }

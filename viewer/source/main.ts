@@ -1,6 +1,6 @@
 import { ink } from "./charts";
 import { type Connection, Engine, type Listener, Server, type Wanted } from "./connection";
-import { FIELDS } from "./fields";
+import { FIELDS, lacks } from "./fields";
 import { showField } from "./field-legend";
 import type { Film } from "./film";
 import { History } from "./history";
@@ -8,7 +8,7 @@ import { Host, isHosted } from "./host";
 import { showHeading } from "./heading";
 import { listenToKeys } from "./keys";
 import { element, isStillAsked, keepSaid, listenToDialogs, listenToLook, listenToSizes, say } from "./page";
-import { listenToLooks } from "./looks";
+import { listenToLooks, offer } from "./looks";
 import { giveLoop } from "./loop";
 import { listenToPointers } from "./pointers";
 import { type Driven, type Frame, type Told, unitOfTime, type Welcome } from "./protocol";
@@ -164,6 +164,8 @@ class Page {
     this.shownFrame = null;
     this.chartsStale = true;
     document.body.dataset.recorded = String(recorded !== null);
+    if (recorded && FIELDS[this.field].ofContacts) this.field = "axial";
+    offer(this.field, recorded !== null);
     element("loop-name").textContent = isSteady(this.film, tube) ? insteadOfLoop(tube).name : recorded ? "The loop, as it was driven" : "The loop";
   }
 
@@ -280,7 +282,9 @@ class Page {
 
   private showLegend(): void {
     const force = this.scene?.contacts ? this.scene.forces.largest : null;
-    showField(FIELDS[this.field], this.scene?.lightness ?? false, this.scene?.marks ?? false, force);
+    const field = FIELDS[this.field];
+    const isLacking = this.shownFrame !== null && lacks(field, this.shownFrame);
+    showField(field, isLacking, this.scene?.lightness ?? false, this.scene?.marks ?? false, force);
   }
 
   /** Contacts are sent where something is made of them. */

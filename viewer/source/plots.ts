@@ -115,18 +115,20 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   // A mean over a handful of looks at grains is none.
   const means = Array.from(velocity, (sum, bin) => (number[bin] >= FEWEST ? sum / number[bin] : NaN));
   const least = Math.min(-0.25, ...means.filter(Number.isFinite));
-  const legend = [
+  const most = Math.max(1.3, ...means.filter(Number.isFinite));
+  const area = `color-mix(in srgb, ${colours.wall} 20%, transparent)`;
+  const legend: Entry[] = [
     { text: `mean axial velocity/${standing === null ? "c" : `(${written(standing)} d/t)`}`, colour: colours.accent },
     { text: "volume fraction φ", colour: colours.text, dash: [2, 3] },
-    { text: "tube", colour: colours.wall },
+    { text: "tube", colour: area, mark: "area" },
   ];
   const position = tube.unit_period === null ? "position z/λ" : "position (z − ct)/λ";
-  chart.begin([0, 1], [least, 1.3], [position, ""], colours, { legend });
+  chart.begin([0, 1], [least, most], [position, ""], colours, { legend });
   const middle = (bin: number) => (bin + 0.5) / bins;
   // The tube's outline above and below the middle of the chart.
   const radius = outline(film.frame(shown) ?? frames.at(-1), tube);
-  const centre = 0.5 * (least + 1.3);
-  const scale = (0.46 * (1.3 - least)) / Math.max(...radius, 1);
+  const centre = 0.5 * (least + most);
+  const scale = (0.46 * (most - least)) / Math.max(...radius, 1);
   const { context } = chart;
   context.save();
   chart.clip();
@@ -135,8 +137,7 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   for (let k = radius.length - 1; k >= 0; k--)
     context.lineTo(chart.x.at(k / (radius.length - 1)), chart.y.at(centre - scale * radius[k]));
   context.closePath();
-  context.globalAlpha = 0.2;
-  context.fillStyle = colours.wall;
+  context.fillStyle = area;
   context.fill();
   context.restore();
   // Of the clear tube, inside the spheres of the wall.

@@ -18,16 +18,19 @@ export function factsOf(point: Point, results: Results, { x, other }: Choice): F
   return facts;
 }
 
-/** Fills the tip; `opens` tells what opens the point's run, null where its runs cannot be watched. */
-export function showTip(point: Point, facts: Facts, opens: string | null): void {
-  element("tip-value").textContent = valueOf(point);
+/**
+ * Fills the tip; `quantity` says what its value is, with the unit, and `opens` what opens the point's run, null where its runs
+ * cannot be watched.
+ */
+export function showTip(quantity: string, point: Point, facts: Facts, opens: string | null): void {
+  element("tip-value").textContent = `${quantity}: ${valueOf(point)}`;
   fill(element("tip-facts"), facts);
   element("tip-open").textContent = opens ?? "the design of this table is not known: its runs cannot be watched";
 }
 
 /** The point with the values of its runs; `address` is that of a row's run. */
-export function showPoint(point: Point, results: Results, choice: Choice, address: (row: number) => string): void {
-  element("point-value").textContent = valueOf(point);
+export function showPoint(quantity: string, point: Point, results: Results, choice: Choice, address: (row: number) => string): void {
+  element("point-value").textContent = `${quantity}: ${valueOf(point)}`;
   fill(element("point-facts"), factsOf(point, results, choice));
   const replicate = (row: number) => results.number("replicate", row);
   const lines = point.rows.toSorted((one, other) => replicate(one) - replicate(other)).map((row) => {

@@ -89,7 +89,10 @@ export class Readout {
     element("play").setAttribute("aria-pressed", String(playing));
     element("onward").hidden = live || tube.recorded !== null;
     const select = element<HTMLSelectElement>("speed");
-    if (select !== document.activeElement) select.value = speed === null ? "" : String(speed);
+    const chosen = speed === null ? "" : String(speed);
+    // A sweep has a speed of its own.
+    if (![...select.options].some(({ value }) => value === chosen)) select.add(new Option(`${chosen} T/s`, chosen), select.length - 1);
+    if (select !== document.activeElement) select.value = chosen;
     this.showPace(newest, tube, speed, now);
     // While one looks back, what drove the run then.
     this.sliders.show(frame.driven, live ? (newest ?? frame).aims : frame.driven);

@@ -1,4 +1,3 @@
-import { written } from "./charts";
 import { element } from "./page";
 
 /** A chapter of the front page. */
@@ -26,7 +25,7 @@ export function tell(text: string): void {
 export function givesUp(period: number, newest: number, unit: string, question: string, answer: string): Promise<boolean> {
   const dialog = element<HTMLDialogElement>("confirm");
   element("confirm-text").textContent =
-    `${question} What came after ${written(period)} ${unit}, up to ${written(newest)} ${unit}, is given up: the loop and the frames.`;
+    `${question} What came after ${period.toFixed(2)} ${unit}, up to ${newest.toFixed(2)} ${unit}, is given up: the loop and the frames.`;
   element("confirm-yes").textContent = answer;
   dialog.returnValue = "";
   dialog.showModal();

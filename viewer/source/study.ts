@@ -140,6 +140,8 @@ class StudyPage {
     options("x", numeric(results), choice.x);
     const none = choice.view === "curves" ? [{ name: "none", label: "none" }] : [];
     options("other", [...results.parameters.filter(({ name }) => name !== choice.x), ...none], choice.other);
+    // A box may be too narrow for what is chosen.
+    for (const id of ["value", "x", "other"]) element(id).title = element<HTMLSelectElement>(id).selectedOptions[0]?.text ?? "";
     element("other-name").textContent = choice.view === "heat" ? "up" : "family";
     element("start-label").hidden = results.starts.length < 2;
     const starts = ["both", ...results.starts].map((name) => ({ name, label: name === "both" ? "both" : `from ${name}` }));
@@ -229,7 +231,7 @@ class StudyPage {
     element("charts").hidden = empty;
     this.showLegend();
     if (empty || !x) return;
-    const value = results.quantities.find(({ name }) => name === choice.value)?.label ?? "";
+    const value = this.quantity;
     const other = results.parameter(choice.other)?.label ?? "";
     for (const panel of this.panels) {
       const { chart } = panel;
@@ -248,7 +250,7 @@ class StudyPage {
         const room = 0.03 * (across(this.points)[1] - across(this.points)[0]);
         const places = this.points.map((point) => point.x);
         const ends: [number, number] = [Math.min(...places) - room, Math.max(...places) + room];
-        chart.begin(ends, extent(this.points, choice.logarithmic), [x.label, value], colours, { left: 52, logarithmic: choice.logarithmic });
+        chart.begin(ends, extent(this.points, choice.logarithmic), [x.label, value], colours, { logarithmic: choice.logarithmic });
         panel.places = drawCurves(chart, curves, this.chosen, colours);
         panel.lines = curves.map(({ points }) => points);
       }
@@ -265,11 +267,16 @@ class StudyPage {
     return { from: Math.min(...values), to: Math.max(...values), logarithmic: this.choice.logarithmic };
   }
 
+  /** What is drawn, with its unit. */
+  private get quantity(): string {
+    return this.results?.quantities.find(({ name }) => name === this.choice.value)?.label ?? "";
+  }
+
   private showLegend(): void {
     const { results, choice } = this;
     const box = element("legend");
     if (!results || this.points.length === 0) return box.replaceChildren();
-    const value = results.quantities.find(({ name }) => name === choice.value)?.label ?? "";
+    const value = this.quantity;
     if (choice.view === "heat") return showScale(box, value, this.scale());
     const family = results.parameter(choice.other);
     showMarks(box, family?.label ?? value, this.curves(), this.points.some(({ atLeast }) => atLeast));
@@ -281,7 +288,7 @@ class StudyPage {
     element("tip").hidden = !place;
     if (!place || !results) return;
     const isKnown = results.typical(chosen, choice.value) !== null;
-    showTip(chosen, factsOf(chosen, results, choice), isKnown ? (this.touched ? "tap again to watch its run" : "click to watch its run") : null);
+    showTip(this.quantity, chosen, factsOf(chosen, results, choice), isKnown ? (this.touched ? "tap again to watch its run" : "click to watch its run") : null);
     put(element("tip"), element("charts"), within, place);
   }
 
@@ -289,7 +296,7 @@ class StudyPage {
     const { chosen, results, choice } = this;
     element("point").hidden = chosen === null;
     element("hint").hidden = chosen !== null;
-    if (chosen && results) showPoint(chosen, results, choice, (row) => this.address(results, row));
+    if (chosen && results) showPoint(this.quantity, chosen, results, choice, (row) => this.address(results, row));
   }
 
   private address(results: Results, row: number): string {

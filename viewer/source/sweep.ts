@@ -8,6 +8,8 @@ const MINUTE = 60;
 /** Part of the samples that a run can have which it takes at most, or of those that are left. */
 const SHARE = 0.25;
 const REST = 0.9;
+/** Part of them that is to be enough. */
+const SLACK = 0.9;
 /** Steps there and back, and milliseconds from one look at the place to the next. */
 const STEPS = 150;
 const EACH = 40;
@@ -43,10 +45,17 @@ export class Sweep {
     const seconds = (MINUTE * whole) / (2 * across);
     const most = Math.min(SHARE * tube.most_samples, REST * (tube.most_samples - first));
     let last = -1;
-    // As fast as the machine computes, so that the flow has the time that a minute gives.
+    // As fast as the machine computes, until it is known how fast the samples would be used up.
     this.connection.send({ type: "speed", periods_per_second: null });
+    let isPaced = false;
     this.connection.send({ type: "play", playing: true });
     const step = () => {
+      const apart = this.apart();
+      if (!isPaced && apart > 0) {
+        isPaced = true;
+        const pace = (SLACK * most * apart) / seconds;
+        this.connection.send({ type: "speed", periods_per_second: Number(pace.toPrecision(2)) });
+      }
       // A small tube is so quick that a minute has more samples than are kept.
       const part = Math.min(1, Math.max((performance.now() - begin) / 1000 / seconds, (this.samples() - first) / most));
       if (part < 1 && part * whole < last + (2 * across) / STEPS) return;
@@ -70,6 +79,13 @@ export class Sweep {
   /** How many the run has taken. */
   private samples(): number {
     return this.film().rows.at(-1)?.number ?? 0;
+  }
+
+  /** Periods from one sample to the next; no number where that is not known yet. */
+  private apart(): number {
+    const { rows } = this.film();
+    const [first, last] = [rows.at(0), rows.at(-1)];
+    return first && last ? (last.clock - first.clock) / (last.number - first.number) : NaN;
   }
 
   private show(): void {

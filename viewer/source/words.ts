@@ -10,10 +10,10 @@ export function withError(value: number, error: number): string {
     const power = Math.floor(Math.log10(size));
     const scale = 10 ** power;
     const decimals = Math.min(8, Math.max(0, power - digits + 1));
-    return `(${(value / scale).toFixed(decimals)} ± ${(error / scale).toFixed(decimals)})·${powerOfTen(power)}`.replace("-", "−");
+    return `(${(value / scale).toFixed(decimals)}\u00a0±\u00a0${(error / scale).toFixed(decimals)})·${powerOfTen(power)}`.replace("-", "−");
   }
   const decimals = Math.min(10, Math.max(0, 1 - digits));
-  return `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}`.replace("-", "−");
+  return `${value.toFixed(decimals)}\u00a0±\u00a0${error.toFixed(decimals)}`.replace("-", "−");
 }
 
 /** The value of a point, which is a lower limit where runs ended without a transition. */
