@@ -48,7 +48,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     } else {
         Verdict::Reproduced
     };
-    let statistics = together(tight.iter().copied());
+    let statistics = together(drawn.iter().copied());
     let mut draft = draft(PROSE);
     let lowest = |line: &&ForceLine<'_>| {
         let point = line.flow.lowest()?;

@@ -410,11 +410,11 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
 #[test]
 fn seeds_and_runs_tell_the_mass_flow() {
     let place = Place::new();
-    let silo = "run --preset silo --set run.duration=100 --seeds 1..2 --out";
-    let flows = ["mass flow", "m/t", "mean of 2 seeds"];
+    let silo = "run --preset silo run.duration=100 --seeds 1..2 --out";
+    let flows = ["mass flow", "kg/h", "mean of 2 seeds"];
     place.does(&format!("{silo} silo")).shows(&flows);
     let json = place.does("runs silo --json").json();
-    assert_eq!(json[0]["mass_flow_unit"], "m/t");
+    assert_eq!(json[0]["mass_flow_unit"], "kg/h");
     let si = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=100";
     place.does(&format!("run SMALL {si} --out pump"));
     place.does("runs pump").shows(&["mass flow", "kg/h"]);
