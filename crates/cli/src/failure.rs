@@ -210,11 +210,7 @@ const MEND: &str = "nothing that was finished is lost: mend the disk and call ag
 
 /// Whether the place cannot be written to by this user.
 fn is_closed(error: &FormatError) -> bool {
-    use std::io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
-    let FormatError::Io { source, .. } = error else {
-        return false;
-    };
-    matches!(source.kind(), PermissionDenied | ReadOnlyFilesystem)
+    matches!(error, FormatError::Io { source, .. } if peristalsis_formats::is_closed(source))
 }
 
 /// What to do about results that could not all be written.

@@ -179,6 +179,12 @@ pub enum FormatError {
     Serialize(#[source] postcard::Error),
 }
 
+/// Whether the operating system refused since this user may not write there.
+pub fn is_closed(error: &io::Error) -> bool {
+    use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
+    matches!(error.kind(), PermissionDenied | ReadOnlyFilesystem)
+}
+
 impl FormatError {
     /// What went wrong with a file; an error of ours that came by way of `io` is that error again.
     pub(crate) fn io(operation: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {

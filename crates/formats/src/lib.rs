@@ -27,7 +27,7 @@ pub mod trajectory;
 mod value_kind;
 
 pub use checkpoint::CheckpointIdentity;
-pub use error::FormatError;
+pub use error::{FormatError, is_closed};
 pub use table::{Column, Table, TableBuilder, Values};
 pub use trajectory::{Frame, TrajectoryFile, TrajectoryFormat};
 pub use value_kind::ValueKind;

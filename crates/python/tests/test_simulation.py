@@ -9,6 +9,8 @@ import subprocess
 import threading
 import time
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -344,15 +346,21 @@ def test_two_threads_cannot_run_one_simulation() -> None:
     assert "running already" in str(outcome[0])
 
 
+@contextmanager
+def stopped_soon() -> Iterator[None]:
+    """Ctrl-C after 0.3 s ends what is done here within 3 s."""
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        yield
+    assert time.monotonic() - begin < 3.0
+
+
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_ctrl_c_stops_soon_and_keeps_what_there_is(small: Simulation) -> None:
     plain = small.copy()
-    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
-    begin = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
+    with stopped_soon():
         small.run(periods=1e7)
-    assert time.monotonic() - begin < 3.0
     plain.step(small.steps)
     assert same(small, plain)
     small.step(10)
@@ -414,12 +422,8 @@ def test_nonsense_lengths_are_refused(small: Simulation) -> None:
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_ctrl_c_is_heard_while_a_picture_is_drawn(small: Simulation) -> None:
-    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
-    timer.start()
-    begin = time.monotonic()
-    with pytest.raises(KeyboardInterrupt):
+    with stopped_soon():
         small.render(width=16_000)
-    assert time.monotonic() - begin < 3.0
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="forks")

@@ -108,11 +108,10 @@ pub enum StudyError {
 impl StudyError {
     /// Whether the store is there and cannot be written to.
     pub fn is_closed(&self) -> bool {
-        use std::io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
         match self {
             Self::Index { source, .. } => is_closed(source),
             Self::Io { source, .. } | Self::Format(FormatError::Io { source, .. }) => {
-                matches!(source.kind(), PermissionDenied | ReadOnlyFilesystem)
+                peristalsis_formats::is_closed(source)
             }
             _ => false,
         }

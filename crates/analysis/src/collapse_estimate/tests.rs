@@ -234,6 +234,8 @@ fn a_curve_that_bends_too_sharply_is_not_trusted() {
             .filter(|(one, truth)| one.interval_95.contains(**truth))
             .count();
         assert!(!found.trusted || held == 3, "{found:?}");
+        let is_said = |doubt: &String| doubt.contains("too sharply");
+        assert!(found.doubts.iter().any(is_said), "{:?}", found.doubts);
     }
 }
 
