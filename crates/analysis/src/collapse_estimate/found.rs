@@ -8,6 +8,7 @@ use crate::numerics::quasi_newton::Smallest;
 use crate::numerics::simplex::nelder_mead;
 use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
 use std::cell::RefCell;
+use std::cmp::Ordering;
 
 /// Evaluations of the coarse search from one start, for each parameter.
 const EVALUATIONS: usize = 80;
@@ -169,12 +170,13 @@ impl<'a> Found<'a> {
         let mut at_far = deviations_at(far);
         let open = deviations.signum() * f64::INFINITY;
         while at_far < wanted {
-            if far > REACH * step {
+            let farther = far * (wanted / at_far).clamp(1.2, 4.0);
+            // Steps that are all but 0 lead nowhere.
+            if far > REACH * step || farther.partial_cmp(&far) != Some(Ordering::Greater) {
                 return (open, walk);
             }
-            let growth = (wanted / at_far).clamp(1.2, 4.0);
             (near, at_near) = (far, at_far);
-            far *= growth;
+            far = farther;
             at_far = deviations_at(far);
         }
         let mut end = None;

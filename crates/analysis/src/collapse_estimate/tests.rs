@@ -239,6 +239,23 @@ fn a_curve_that_bends_too_sharply_is_not_trusted() {
     }
 }
 
+/// An end of an interval was sought for ever where a step and its multiples are 0 to this precision.
+#[test]
+fn a_search_with_steps_of_next_to_nothing_ends() {
+    for step in [5e-324, 1e-320, 1e-300] {
+        let kind = Kind {
+            steps: vec![step; 3],
+            ..kinds().swap_remove(0)
+        };
+        let curves = kind.curves(0, 0.0, 1.0);
+        for correction in [None, Some(-1.0)] {
+            if let Ok(found) = kind.estimate(&curves, correction, 0) {
+                assert!(!found.trusted, "{found:?}");
+            }
+        }
+    }
+}
+
 /// With a correction in the data that is not allowed for, exponents are wrong, and the answer says that it cannot be
 /// trusted; allowed for, they are right. At known critical points 59 of 60 called themselves trusted.
 #[test]
