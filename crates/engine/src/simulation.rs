@@ -20,7 +20,7 @@ use crate::ledger::{Ledger, Tally};
 use crate::parameters::{Kernel, Parameters};
 use crate::snapshot::{Snapshot, SnapshotView};
 use crate::steps::Course;
-use crate::touching::{Touching, touching};
+use crate::touching::{Touching, for_each_touching};
 use crate::wall::Wall;
 use crate::wall_contacts::{WallContact, add_up_smooth_contacts, for_each_contact};
 
@@ -403,13 +403,20 @@ impl Simulation {
         vec![sums]
     }
 
-    /// All contacts as they are now, with their forces; grain by grain.
-    pub fn touching(&self) -> Vec<Touching> {
+    /// Calls `visit` for all contacts as they are now, with their forces; grain by grain.
+    pub fn for_each_touching(&self, visit: &mut dyn FnMut(Touching)) {
         let normal = self.parameters().contact.normal;
         let (bodies, wall) = (self.bodies(), self.wall());
-        with_contact_law!(normal, &self.memory, |law, contacts| touching(
-            law, bodies, wall, contacts
-        ))
+        with_contact_law!(normal, &self.memory, |law, contacts| for_each_touching(
+            law, bodies, wall, contacts, visit
+        ));
+    }
+
+    /// All contacts as they are now: see [`Simulation::for_each_touching`].
+    pub fn touching(&self) -> Vec<Touching> {
+        let mut found = Vec::new();
+        self.for_each_touching(&mut |touching| found.push(touching));
+        found
     }
 
     /// Everything that a restart needs to go on with the same bits.

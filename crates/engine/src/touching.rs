@@ -33,32 +33,33 @@ pub struct Touching {
     pub couple: DVec3,
 }
 
-/// All contacts at the present positions and velocities, in order of the first sphere; those of a grain with other moving
-/// spheres before those with a prescribed wall.
+/// Calls `visit` for all contacts at the present positions and velocities, in order of the first sphere; those of a grain
+/// with other moving spheres come before those with a prescribed wall.
 ///
 /// No history moves on.
-pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
+pub(crate) fn for_each_touching<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,
     wall: &Wall,
     contacts: &Contacts<T::History<f64>>,
-) -> Vec<Touching> {
+    visit: &mut dyn FnMut(Touching),
+) {
     let mut listed_anew = None;
     if !contacts.are_listed(bodies, wall) {
         let contacts = listed_anew.insert(contacts.clone());
         contacts.rebuild(bodies, wall, [0.0; 2], &Threads::default());
     }
     let contacts = listed_anew.as_ref().unwrap_or(contacts);
-    let mut found = Vec::new();
     for first in 0..bodies.number() {
         let here = bodies.sphere(first);
         let length = wall.length();
         contacts.for_each_acting(law, bodies, length, first, 0, |second, contact, history| {
             // Wall against wall has no friction.
-            found.extend(match first < bodies.grains {
+            let touching = match first < bodies.grains {
                 true => answered(law, contact, *history, first, second),
                 false => answered(&law.frictionless(), contact, (), first, second),
-            });
+            };
+            touching.into_iter().for_each(&mut *visit);
         });
         if first >= bodies.grains {
             continue;
@@ -66,16 +67,10 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
         wall.for_each_contact(&here, law.range(here.diameter), |sphere, contact, _| {
             let history = contacts.wall.history(first, sphere);
             let second = bodies.grains + sphere as usize;
-            found.extend(answered(
-                law,
-                &here.on_wall(contact),
-                history,
-                first,
-                second,
-            ));
+            let touching = answered(law, &here.on_wall(contact), history, first, second);
+            touching.into_iter().for_each(&mut *visit);
         });
     }
-    found
 }
 
 /// The response of the law to two spheres; `None` where it does not act.

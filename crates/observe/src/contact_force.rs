@@ -3,7 +3,7 @@
 use peristalsis_engine::Simulation;
 use serde::{Deserialize, Serialize};
 
-use crate::load::grain_contacts;
+use crate::load::for_each_grain_contact;
 use crate::series::{Join, Series, joined};
 
 /// Steps from one look to the next, at least: every contact has to be found again, which takes as long as some steps.
@@ -25,8 +25,8 @@ pub struct ContactForce {
 impl ContactForce {
     /// The forces now.
     pub fn of(simulation: &Simulation) -> Self {
-        let contacts = grain_contacts(simulation).into_iter();
-        let mut forces: Vec<f64> = contacts.map(|it| it.touching.normal_force).collect();
+        let mut forces = Vec::new();
+        for_each_grain_contact(simulation, |it| forces.push(it.touching.normal_force));
         forces.sort_by(f64::total_cmp);
         let rank = (PART * forces.len() as f64).ceil() as usize;
         Self {

@@ -62,15 +62,22 @@ impl GrainContact {
     }
 }
 
-/// The contacts of the grains as they stand, grain by grain; those of the wall with itself are left out.
-pub fn grain_contacts(simulation: &Simulation) -> Vec<GrainContact> {
+/// Calls `visit` for the contacts of the grains as they stand, grain by grain; those of the wall with itself are left out.
+pub(crate) fn for_each_grain_contact(simulation: &Simulation, mut visit: impl FnMut(GrainContact)) {
     let bodies = simulation.bodies();
     let wall_diameter = simulation.wall().sphere_diameter();
-    let touching = simulation.touching().into_iter();
-    let of_grains = touching.filter(|touching| touching.first < bodies.grains);
-    of_grains
-        .map(|touching| GrainContact::of(touching, bodies, wall_diameter))
-        .collect()
+    simulation.for_each_touching(&mut |touching| {
+        if touching.first < bodies.grains {
+            visit(GrainContact::of(touching, bodies, wall_diameter));
+        }
+    });
+}
+
+/// The contacts of the grains: see [`for_each_grain_contact`].
+pub fn grain_contacts(simulation: &Simulation) -> Vec<GrainContact> {
+    let mut contacts = Vec::new();
+    for_each_grain_contact(simulation, |contact| contacts.push(contact));
+    contacts
 }
 
 /// Forces and torques on the grains at the present positions and velocities, and the stress in them.
@@ -103,7 +110,7 @@ impl Load {
         let mut forces: Vec<DVec3> = masses.iter().enumerate().map(weight).collect();
         let mut torques = vec![DVec3::ZERO; bodies.grains];
         let mut virial = kinetic_part(simulation);
-        for contact in grain_contacts(simulation) {
+        for_each_grain_contact(simulation, |contact| {
             let Touching {
                 first,
                 second,
@@ -118,7 +125,7 @@ impl Load {
                 torques[second] += on_second;
             }
             virial += dyad(contact.branch(), force);
-        }
+        });
         Self {
             forces,
             torques,

@@ -6,11 +6,11 @@ use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
 use crate::RunError;
 
 /// Bytes of the program itself with its figures.
-const BYTES_OF_PROGRAM: f64 = 3e7;
-/// Bytes of a frictionless grain in a prescribed tube, at most: while the grains of a dense tube are packed.
-const BYTES_OF_GRAIN: f64 = 2000.0;
-/// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered.
-const BYTES_WITH_CONTACTS: f64 = 4000.0;
+const BYTES_OF_PROGRAM: f64 = 4e7;
+/// Bytes of a frictionless grain in a prescribed tube, at most: some 450 are measured (BENCHMARKS.md).
+const BYTES_OF_GRAIN: f64 = 800.0;
+/// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered, at most: 1,200 to 2,000 are measured.
+const BYTES_WITH_CONTACTS: f64 = 3000.0;
 
 /// Grains, and spheres of an elastic wall.
 pub(crate) fn moving_spheres(configuration: &Configuration) -> u64 {

@@ -130,7 +130,7 @@ fn a_tube_for_which_there_is_no_memory_is_refused_in_words() {
         limited(&format!("{command} {large}"))
             .expect_code(2)
             .says(&[
-                "a run of 506000005 moving spheres takes up to some 2.0 TB of memory",
+                "a run of 506000005 moving spheres takes up to some 1.5 TB of memory",
                 "tube.waves",
                 "ulimit -v",
             ]);
