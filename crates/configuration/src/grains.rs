@@ -75,11 +75,11 @@ impl Grains {
             SizeForm::Uniform => None,
             SizeForm::Two => {
                 let large = self.large_fraction.unwrap_or(0.5);
-                Sizes::classes([(least, 1.0 - large), (largest, large)])
+                Sizes::classes(vec![(least, 1.0 - large), (largest, large)])
             }
             SizeForm::Table => {
                 let fractions = self.fractions.iter().copied();
-                Sizes::classes(self.diameters.iter().copied().zip(fractions))
+                Sizes::classes(self.diameters.iter().copied().zip(fractions).collect())
             }
         };
         classes.unwrap_or(Sizes::Uniform(bounds))

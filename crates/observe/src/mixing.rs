@@ -45,11 +45,11 @@ impl Kinds {
         if simulation.ends().is_some() {
             return Self::default();
         }
-        let grains = simulation.bodies().grains;
+        let grains: Vec<usize> = (0..simulation.bodies().grains).collect();
         let view = View::of(simulation);
         let second_half = |place: &dyn Fn(usize) -> f64| {
-            let mut is_second = vec![false; grains];
-            for &grain in &in_order(0..grains, place)[grains / 2..] {
+            let mut is_second = vec![false; grains.len()];
+            for &grain in &in_order(&grains, place)[grains.len() / 2..] {
                 is_second[grain] = true;
             }
             is_second
@@ -79,22 +79,24 @@ impl Mixing {
         if kinds.behind.is_empty() {
             return None;
         }
-        let inside = || (0..view.inside.len()).filter(|&grain| view.inside[grain]);
-        let moved = |grain: usize| unfolded[grain] - start[grain];
-        let mean = inside().map(moved).sum::<f64>() / inside().count() as f64;
+        let mut inside: Vec<usize> = (0..view.inside.len()).collect();
+        inside.retain(|&grain| view.inside[grain]);
+        let moved = |&grain: &usize| unfolded[grain] - start[grain];
+        let mean = inside.iter().map(moved).sum::<f64>() / inside.len() as f64;
         let length = view.simulation.length();
         let along = |grain: usize| (unfolded[grain] - mean).rem_euclid(length);
         let radial = |grain: usize| view.radial_place(grain);
         Some(Self {
-            axial: index(&in_order(inside(), &along), &kinds.behind)?,
-            radial: index(&in_order(inside(), &radial), &kinds.outer)?,
+            axial: index(&in_order(&inside, &along), &kinds.behind)?,
+            radial: index(&in_order(&inside, &radial), &kinds.outer)?,
         })
     }
 }
 
 /// Grains in the order of a coordinate, of equal ones in their own.
-fn in_order(grains: impl Iterator<Item = usize>, place: &dyn Fn(usize) -> f64) -> Vec<usize> {
-    let mut placed: Vec<(f64, usize)> = grains.map(|grain| (place(grain), grain)).collect();
+fn in_order(grains: &[usize], place: &dyn Fn(usize) -> f64) -> Vec<usize> {
+    let placed = grains.iter().map(|&grain| (place(grain), grain));
+    let mut placed: Vec<(f64, usize)> = placed.collect();
     placed.sort_by(|one, other| one.0.total_cmp(&other.0));
     placed.into_iter().map(|(_, grain)| grain).collect()
 }

@@ -51,8 +51,8 @@ fn normal(x: f64) -> f64 {
 
 impl Sizes {
     /// Single diameters with weights, which need not add up to 1; `None` where no weight is positive.
-    pub fn classes(classes: impl IntoIterator<Item = (f64, f64)>) -> Option<Self> {
-        let mut classes: Vec<(f64, f64)> = classes.into_iter().filter(|it| it.1 > 0.0).collect();
+    pub fn classes(mut classes: Vec<(f64, f64)>) -> Option<Self> {
+        classes.retain(|it| it.1 > 0.0);
         classes.sort_by(|one, other| one.0.total_cmp(&other.0));
         let whole: f64 = classes.iter().map(|it| it.1).sum();
         let mut below = 0.0;
@@ -148,7 +148,7 @@ mod tests {
     }
 
     fn two() -> Sizes {
-        Sizes::classes([(1.5, 0.25), (0.5, 0.75)]).unwrap()
+        Sizes::classes(vec![(1.5, 0.25), (0.5, 0.75)]).unwrap()
     }
 
     /// Means of many evenly spaced parts, of each form.
@@ -178,7 +178,7 @@ mod tests {
             let last = sizes.diameter(1.0 - f64::EPSILON);
             assert!((last - largest).abs() < 1e-6 && last <= largest);
         }
-        assert_eq!(Sizes::classes([(1.0, 0.0)]), None);
+        assert_eq!(Sizes::classes(vec![(1.0, 0.0)]), None);
     }
 
     /// The median of a distribution that is cut far from it on both sides.

@@ -272,7 +272,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
                 Arrangement::File => {
                     let angles = tube.angles.iter().copied();
                     let places = tube.places.iter().copied();
-                    wall.with(Scattered::at(&lattice, angles.zip(places)))
+                    wall.with(Scattered::at(&lattice, angles.zip(places).collect()))
                 }
             })
         }

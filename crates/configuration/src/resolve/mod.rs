@@ -304,6 +304,12 @@ impl Context<'_> {
         message: String,
         help: String,
     ) -> Option<T> {
+        self.report(kind, keys, message, help);
+        None
+    }
+
+    /// Notes such a problem.
+    fn report(&mut self, kind: ProblemKind, keys: &[&str], message: String, help: String) {
         let mut places: Vec<(&str, Origin)> = Vec::new();
         for (place, key) in keys.iter().enumerate() {
             if !keys[..place].contains(key)
@@ -321,7 +327,6 @@ impl Context<'_> {
             problem = problem.at(origin, format!("{key} = {}", shown(origin)));
         }
         self.problems.push(problem);
-        None
     }
 }
 

@@ -36,6 +36,9 @@ fn this_process() -> u32 {
     }
 }
 
+/// Whether there are threads at all: where there are none, what would share work out is not compiled.
+pub(crate) const THREADS_EXIST: bool = cfg!(not(target_family = "wasm"));
+
 /// Stretches of work for each thread, at least and at most: one that is done early takes what others have not begun.
 const PER_THREAD: [usize; 2] = [2, 8];
 /// Spheres of a stretch where there may be more than the least: what neighbouring stretches both do is little beside it.
@@ -115,6 +118,12 @@ impl Threads {
         if threads < 2 {
             return Ok(Self::default());
         }
+        if !THREADS_EXIST {
+            return Err(EngineError::Threads {
+                threads,
+                reason: "WebAssembly has no threads".to_owned(),
+            });
+        }
         let service = Service(Arc::new(Served {
             process: this_process(),
             team: Team::new(threads),
@@ -137,23 +146,23 @@ impl Threads {
     }
 
     pub(crate) fn number(&self) -> usize {
-        let pool = self.0.as_deref();
+        let pool = self.pool();
         pool.map_or(1, |pool| pool.threads.current_num_threads())
     }
 
     /// Whether they are in this process, not in one that it was forked from.
     pub(crate) fn are_here(&self) -> bool {
-        let pool = self.0.as_deref();
+        let pool = self.pool();
         pool.is_none_or(|pool| pool.service.0.process == this_process())
     }
 
     /// Which of them this one is, if any.
     fn index(&self) -> Option<usize> {
-        self.0.as_deref()?.threads.current_thread_index()
+        self.pool()?.threads.current_thread_index()
     }
 
     fn team(&self) -> Option<&Team> {
-        self.0.as_deref().map(|pool| &pool.service.0.team)
+        self.pool().map(|pool| &pool.service.0.team)
     }
 
     /// Into how many stretches a work on so many spheres is best cut.
@@ -170,14 +179,17 @@ impl Threads {
         ((stretch + 1) * self.number() - 1) / stretches
     }
 
-    /// Never where there are no threads, so that what would share work out is not compiled there.
     pub(crate) fn several(&self) -> bool {
-        cfg!(not(target_family = "wasm")) && self.0.is_some()
+        self.pool().is_some()
+    }
+
+    fn pool(&self) -> Option<&Pool> {
+        self.0.as_deref().filter(|_| THREADS_EXIST)
     }
 
     /// Does work that shares itself out, part after part; the threads stay awake for the parts.
     pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        let Some(pool) = self.0.as_deref() else {
+        let Some(pool) = self.pool() else {
             return work();
         };
         let _advance = Advance::begin(&pool.service.0);

@@ -11,6 +11,7 @@ use super::terms::RowTerms;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work, bring_near, eight_of, eight_of_each};
 use crate::fast::sums::Sums;
+use crate::fast::threads::THREADS_EXIST;
 use crate::ledger::Tally;
 
 /// What becomes of the answers of the law.
@@ -72,6 +73,7 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
                 self.work_out::<M>(&mut at_once);
                 at_once.sums.add_to(tally);
             }
+            None if !THREADS_EXIST => unreachable!("one thread adds up at once"),
             None => {
                 let mut terms = core::mem::take(&mut self.pairs.terms);
                 terms.clear(self.pairs.contacts(), self.complete);

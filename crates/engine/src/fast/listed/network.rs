@@ -12,6 +12,7 @@ use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
+use crate::fast::threads::THREADS_EXIST;
 use crate::ledger::Tally;
 use crate::wall::{DriveAngle, ElasticWall, NetForce};
 
@@ -174,6 +175,7 @@ impl Work for WallForces<'_> {
                 self.add_to::<M>(&mut sums);
                 sums.add_to(tally);
             }
+            None if !THREADS_EXIST => unreachable!("one thread adds up at once"),
             None => {
                 let mut terms = core::mem::take(&mut self.rings.terms);
                 self.add_to::<M>(&mut terms);

@@ -32,6 +32,7 @@ mod avx512;
 mod neon;
 #[cfg(any(target_arch = "aarch64", target_feature = "simd128"))]
 mod pairs;
+#[cfg(not(all(feature = "small", target_feature = "simd128")))]
 mod plain;
 #[cfg(target_feature = "simd128")]
 mod simd128;

@@ -40,10 +40,10 @@ pub struct Scattered {
 
 impl Scattered {
     /// Spheres of the diameter, and on the length, of a lattice, at the given angles \[rad\] and places z \[d\].
-    pub fn at(lattice: &Lattice, places: impl IntoIterator<Item = (f64, f64)>) -> Self {
+    pub fn at(lattice: &Lattice, mut places: Vec<(f64, f64)>) -> Self {
         let length = lattice.length();
-        let mut sorted: Vec<(f64, f64)> = places.into_iter().collect();
-        sorted.sort_by(|one, other| one.1.total_cmp(&other.1));
+        places.sort_by(|one, other| one.1.total_cmp(&other.1));
+        let sorted = places;
         let number = ((length / lattice.sphere_diameter) as usize).clamp(1, sorted.len().max(1));
         let begins = |piece: usize| {
             let begin = length * piece as f64 / number as f64;
@@ -70,7 +70,7 @@ impl Scattered {
         let length = lattice.length();
         let places = (0..lattice.spheres())
             .map(|_| (TAU * uniform(&mut random), length * uniform(&mut random)));
-        Self::at(lattice, places)
+        Self::at(lattice, places.collect())
     }
 
     /// As many spheres as a lattice has, at random places one after another. Each keeps a distance from those before it,
@@ -115,7 +115,7 @@ impl Scattered {
             }
         }
         let placed = strips.iter().flatten();
-        Self::at(lattice, placed.map(|&[angle, z, ..]| (angle, z)))
+        Self::at(lattice, placed.map(|&[angle, z, ..]| (angle, z)).collect())
     }
 
     /// How many there are.
