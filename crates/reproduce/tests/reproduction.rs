@@ -369,7 +369,7 @@ fn published_rows_that_are_drawn_come_out_the_same() {
     let words = published_in_words(&published, None).unwrap();
     assert_eq!(
         words,
-        "Of 10 published rows 10 of 2 of 2 studies were computed again: all came out the same to the bit."
+        "Of 10 published rows 10, from 2 of 2 studies, were computed again: all came out the same to the bit."
     );
 }
 

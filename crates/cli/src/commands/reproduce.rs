@@ -195,7 +195,7 @@ fn outcome(
 fn sampled(sampling: &Sampling<'_>) -> String {
     let Sampling { board, studies, of } = sampling;
     let mut text = format!(
-        "{} published rows of {studies} of {of} studies computed again, {:.0} % of the sample",
+        "{} published rows computed again, from {studies} of {of} studies, {:.0} % of the sample",
         board.done + board.failed,
         100.0 * board.fraction
     );

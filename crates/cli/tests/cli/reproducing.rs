@@ -136,7 +136,7 @@ fn published_rows_are_computed_again_and_one_that_was_changed_is_named() {
         .says(&["wavelength: 1 of", "drawn with --check-seed 5"])
         .shows(&[
             "Q3   open",
-            "Of 1 published rows 1 of 1 of 1 studies were computed again, drawn with the seed 5: all came out the same",
+            "Of 1 published rows 1, from 1 of 1 studies, were computed again, drawn with the seed 5: all came out the same",
         ]);
     place.refuses(
         "reproduce --only Q3 --fresh",

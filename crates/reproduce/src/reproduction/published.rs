@@ -62,7 +62,7 @@ pub fn published_in_words(all: &[PublishedRows], drawn: Option<&Drawn>) -> Optio
         ),
     };
     let mut words = format!(
-        "Of {rows} published rows {checked} of {studies} of {} studies were computed again{}: {same}{but}.",
+        "Of {rows} published rows {checked}, from {studies} of {} studies, were computed again{}: {same}{but}.",
         all.len(),
         seed.unwrap_or_default(),
     );
