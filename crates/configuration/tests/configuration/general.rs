@@ -136,8 +136,8 @@ fn sizes_that_are_not_whole_are_refused() {
 frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=lognormal | grains.sizes | Inconsistent
 frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=two | grains.sizes | Inconsistent
 frictional | grains.diameter_min=1; grains.diameter_max=1; grains.sizes=two; grains.large_fraction=0.1 | grains.sizes | Inconsistent
-frictional | grains.sizes=table; grains.diameters=[0.6] | grains.sizes | Inconsistent
-frictional | grains.diameter_max=1; grains.sizes=lognormal; grains.diameter_spread=0.2; grains.diameter_median=2 | grains.sizes | Inconsistent
+frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=table; grains.diameters=[0.6] | grains.sizes | Inconsistent
+frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=lognormal; grains.diameter_spread=0.2; grains.diameter_median=2 | grains.sizes | Inconsistent
 ",
     );
     let file = std::env::temp_dir().join(format!("peristalsis-sizes-{}.csv", std::process::id()));
