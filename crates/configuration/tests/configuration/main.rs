@@ -45,7 +45,7 @@ fn only_problem(result: Result<Configuration, ConfigurationError>) -> Problem {
 fn record(configuration: &Configuration) -> String {
     let record = configuration.to_toml();
     assert!(schema_errors(&record).is_empty(), "{record}");
-    let again = Configuration::from_toml("record", &record).unwrap();
+    let again = Configuration::from_toml("record", &record).expect("a record reads back");
     assert_eq!(&again, configuration);
     record
 }
