@@ -198,16 +198,9 @@ impl Drive {
 
     /// A parameter's own value, which its schedule may lead elsewhere; `None` for the amplitude of the other control.
     pub fn own(&self, parameter: ScheduledParameter) -> Option<f64> {
-        match (parameter, self.control) {
+        match (parameter, self.control.amplitude()) {
             (ScheduledParameter::StrainRate, _) => Some(self.strain_rate),
-            (ScheduledParameter::Width, Control::Strain { width }) => Some(width),
-            (
-                ScheduledParameter::ForceAmplitude,
-                Control::Stress {
-                    force_amplitude, ..
-                },
-            ) => Some(force_amplitude),
-            _ => None,
+            (asked, (own, value)) => (asked == own).then_some(value),
         }
     }
 
@@ -238,6 +231,18 @@ pub enum Control {
         #[serde(default)]
         angle: DriveAngle,
     },
+}
+
+impl Control {
+    /// The parameter that gives the amplitude of the wave, and its value.
+    pub fn amplitude(self) -> (ScheduledParameter, f64) {
+        match self {
+            Self::Strain { width } => (ScheduledParameter::Width, width),
+            Self::Stress {
+                force_amplitude, ..
+            } => (ScheduledParameter::ForceAmplitude, force_amplitude),
+        }
+    }
 }
 
 /// The wall. Under strain control its spheres only have a diameter; under stress control they are mobile, joined by
@@ -461,10 +466,8 @@ impl Configuration {
 
     /// Amplitude b = a - w/2 of the wall's radius \[d\]; `None` under stress control.
     pub fn amplitude(&self) -> Option<f64> {
-        match self.drive.control {
-            Control::Strain { width } => Some(self.tube.radius - 0.5 * width),
-            Control::Stress { .. } => None,
-        }
+        let width = self.drive.own(ScheduledParameter::Width)?;
+        Some(self.tube.radius - 0.5 * width)
     }
 
     /// Velocity along the wave that the initial state has of itself \[d t^-1\].

@@ -242,58 +242,37 @@ fn what_cannot_be_drawn_is_refused_by_name() {
     let column = |column: &str, found: usize| {
         format!("the series `τ of runs` has {found} rows of its {column}; there must be 2")
     };
-    for (panel, reason) in [
-        (
-            logarithmic().with(points()),
-            "row 1 of the series `τ of runs` is 0 on the logarithmic y axis; it must be positive"
-                .to_owned(),
-        ),
-        (
-            panel()
-                .x_scale(Scale::Logarithmic)
-                .with(Line::new("", &[-1.0, 1.0], &x)),
-            "row 0 of the series `line` is -1 on the logarithmic x axis".to_owned(),
-        ),
-        (
-            panel().with(Points::new("*τ* of runs", &x, &[1.0])),
-            column("y", 1),
-        ),
-        (
-            panel().with(points().y_errors(&[1.0])),
-            column("errors of y", 1),
-        ),
-        (
-            panel().with(points().lower_limits(&[true])),
-            column("lower limits", 1),
-        ),
-        (
-            panel().with(Bars::new("a", &x, &y)),
-            "the series `a` has 2 rows of its edges; there must be 3".to_owned(),
-        ),
-        (
-            line(&[f64::NAN; 2]),
-            "no finite point to draw (2 rows)".to_owned(),
-        ),
-        (
-            panel().with(Line::new("a", &x, &y).tint(Tint::Value(1.0))),
-            "`a` is coloured by its value, but the chart has no scale".to_owned(),
-        ),
-        (
-            panel().with(Field::new(&[1.0], 1, (0.0, 1.0), (0.0, 1.0))),
-            "`field` is coloured by its value, but the chart has no scale".to_owned(),
-        ),
-        (
-            line(&x).with(Reference::horizontal(f64::NAN)),
-            "NaN, not a finite number".to_owned(),
-        ),
-        (
-            logarithmic().y_range(0.0..).with(Line::new("a", &x, &x)),
-            "range of the y axis is 0 to".to_owned(),
-        ),
-    ] {
+    let refuses = |panel: ChartPanel, reason: &str| {
         let found = refused(ChartFigure::new(panel));
-        assert!(found.contains(&reason), "{found}: not {reason}");
-    }
+        assert!(found.contains(reason), "{found}: not {reason}");
+    };
+    let nought =
+        "row 1 of the series `τ of runs` is 0 on the logarithmic y axis; it must be positive";
+    refuses(logarithmic().with(points()), nought);
+    let below = panel().x_scale(Scale::Logarithmic);
+    let below = below.with(Line::new("", &[-1.0, 1.0], &x));
+    refuses(
+        below,
+        "row 0 of the series `line` is -1 on the logarithmic x axis",
+    );
+    let short = Points::new("*τ* of runs", &x, &[1.0]);
+    refuses(panel().with(short), &column("y", 1));
+    let errors = points().y_errors(&[1.0]);
+    refuses(panel().with(errors), &column("errors of y", 1));
+    let limits = points().lower_limits(&[true]);
+    refuses(panel().with(limits), &column("lower limits", 1));
+    let edges = "the series `a` has 2 rows of its edges; there must be 3";
+    refuses(panel().with(Bars::new("a", &x, &y)), edges);
+    refuses(line(&[f64::NAN; 2]), "no finite point to draw (2 rows)");
+    let coloured = Line::new("a", &x, &y).tint(Tint::Value(1.0));
+    let field = Field::new(&[1.0], 1, (0.0, 1.0), (0.0, 1.0));
+    let without_scale = "is coloured by its value, but the chart has no scale";
+    refuses(panel().with(coloured), &format!("`a` {without_scale}"));
+    refuses(panel().with(field), &format!("`field` {without_scale}"));
+    let nowhere = Reference::horizontal(f64::NAN);
+    refuses(line(&x).with(nowhere), "NaN, not a finite number");
+    let from_nought = logarithmic().y_range(0.0..).with(Line::new("a", &x, &x));
+    refuses(from_nought, "range of the y axis is 0 to");
     let mixed = [line(&x), logarithmic().with(Line::new("", &x, &x))];
     assert!(refused(ChartFigure::grid(2, mixed).share_y()).contains("share their y axis"));
     assert!(refused(ChartFigure::grid(2, [])).contains("`chart`"));

@@ -234,12 +234,7 @@ impl<'a> Line<'a> {
 
     /// The width at which half of the runs have a transition before their end.
     pub(crate) fn crossing(&self) -> Option<FractionCrossing> {
-        let (width, transitions) = self.columns();
-        let jammed: Vec<bool> = transitions
-            .iter()
-            .map(|transition| transition.observed().is_some())
-            .collect();
-        fraction_crossing(&width, &jammed).ok()
+        crossing_of(&self.rows, |row| row.transition_at(self.threshold))
     }
 
     /// The power law in a window of so many widths next to the critical one.

@@ -163,54 +163,28 @@ fn a_design_samples_its_wall_everywhere_and_resolves_its_contacts() {
 
 #[test]
 fn what_is_wrong_in_a_design_is_named_with_its_line() {
-    for (text, key, line, words) in [
-        (
-            HOSE.replace("occlusion = 0.6", "occlusion = 1.6"),
-            "tube.occlusion",
-            8,
-            "too large",
-        ),
-        (
-            HOSE.replace("diameter = 14e-3", "diameter = 1e-3"),
-            "tube.diameter",
-            6,
-            "less than a grain",
-        ),
-        (
-            HOSE.replace("diameter = 14e-3", "diameter = 14"),
-            "tube.diameter",
-            6,
-            "lengths are in metres",
-        ),
-        (
-            HOSE.replace("material = \"glass\"", "friction = 0.3"),
-            "grain.diameter",
-            3,
-            "grain.density, grain.restitution",
-        ),
-        (
-            HOSE.replace("\"glass\"", "\"glas\""),
-            "grain.material",
-            2,
-            "glas",
-        ),
-        (
-            HOSE.replace("frequency", "frequenzy"),
-            "drive.frequenzy",
-            12,
-            "no key",
-        ),
-        (
-            format!("{HOSE}segments = 4\n"),
-            "drive.segments",
-            13,
-            "belongs to",
-        ),
-    ] {
+    // A change of the design, the key to blame with its line, and what is said of it.
+    let wrong = r#"
+occlusion = 0.6 -> occlusion = 1.6 | tube.occlusion | 8 | too large
+diameter = 14e-3 -> diameter = 1e-3 | tube.diameter | 6 | less than a grain
+diameter = 14e-3 -> diameter = 14 | tube.diameter | 6 | lengths are in metres
+material = "glass" -> friction = 0.3 | grain.diameter | 3 | grain.density, grain.restitution
+"glass" -> "glas" | grain.material | 2 | glas
+frequency -> frequenzy | drive.frequenzy | 12 | no key
+frequency -> segments = 4\nfrequency | drive.segments | 12 | belongs to
+"#;
+    for row in wrong.trim().lines() {
+        let cells: Vec<&str> = row.split(" | ").collect();
+        let [change, key, line, words] = cells[..] else {
+            panic!("{row}")
+        };
+        let (from, to) = change.split_once(" -> ").unwrap();
+        let text = HOSE.replace(from, &to.replace("\\n", "\n"));
         let error = configuration(&text, &[]).expect_err("a design that is wrong");
         let problem = &error.problems()[0];
         assert_eq!(problem.key.as_deref(), Some(key), "{error}");
-        assert_eq!(problem.labels[0].line_and_column().0, line, "{error}");
+        let place = problem.labels[0].line_and_column().0;
+        assert_eq!(place.to_string(), line, "{error}");
         let said = error.to_string();
         assert!(
             said.contains(words) && said.contains("tube.toml:"),

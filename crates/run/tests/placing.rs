@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::configuration;
+use common::{configuration, finish};
 use glam::DVec3;
 use peristalsis_configuration::ScheduledParameter;
 use peristalsis_observe::{Load, clear_volume, grain_contacts};
@@ -101,18 +101,14 @@ fn placed_grains_go_on_from_a_checkpoint_with_the_same_bits() {
 fn the_search_for_a_transition_begins_with_the_velocities_of_the_grains() {
     let settings = "tube.waves=2 run.periods=5";
     let jammed = format!("{settings} initial.state=jammed");
-    let mut jammed = Run::new(configuration("frictionless", &jammed)).unwrap();
+    let jammed = Run::new(configuration("frictionless", &jammed)).unwrap();
     let bodies = jammed.simulation().bodies();
     let grains = 0..bodies.grains;
     let (positions, velocities) = (&bodies.position[grains.clone()], &bodies.velocity[grains]);
-    let mut again = moving("run.periods=5", positions, velocities).unwrap();
+    let again = moving("run.periods=5", positions, velocities).unwrap();
     let coasting = format!("{settings} drive.width=3 initial.axial_velocity=0.3");
-    let mut coasting = Run::new(configuration("frictionless", &coasting)).unwrap();
-    for run in [&mut jammed, &mut again, &mut coasting] {
-        while !run.is_complete() {
-            run.advance().unwrap();
-        }
-    }
+    let coasting = Run::new(configuration("frictionless", &coasting)).unwrap();
+    let [jammed, again, coasting] = [jammed, again, coasting].map(finish);
     let averages = |run: &Run| run.recorder().averages().to_vec();
     assert_eq!(averages(&jammed), averages(&again));
     let times = jammed.recorder().transition_times();
@@ -129,10 +125,7 @@ fn what_has_leaked_closes_the_balance_of_an_open_tube() {
     let places = [DVec3::new(0.0, 0.0, 4.0), DVec3::new(1.0, 0.0, 12.0)];
     let shot = DVec3::new(4.0, 0.0, 2.0);
     let open = "tube.ends=open inlet.feed_rate=0 run.periods=1";
-    let mut run = moving(open, &places, &[DVec3::ZERO, shot]).unwrap();
-    while !run.is_complete() {
-        run.advance().unwrap();
-    }
+    let run = finish(moving(open, &places, &[DVec3::ZERO, shot]).unwrap());
     let (samples, mut before) = (run.recorder().samples(), 0.0);
     let through_ends = samples.iter().map(|it| {
         let interval = it.time - core::mem::replace(&mut before, it.time);
@@ -171,9 +164,6 @@ fn a_run_that_is_led_past_its_end_has_a_configuration_that_repeats_it() {
     let text = told.to_toml();
     let read = peristalsis_run::Configuration::from_toml("told", &text).unwrap();
     assert_eq!(&read, told);
-    let mut again = Run::new(read).unwrap();
-    while !again.is_complete() {
-        again.advance().unwrap();
-    }
+    let again = finish(Run::new(read).unwrap());
     assert_eq!(run.simulation().bodies(), again.simulation().bodies());
 }

@@ -265,14 +265,9 @@ fn a_static_wave_has_no_speed_to_compare_with_and_no_grains_are_no_failure() {
         .unwrap()
         .draw(&frame)
         .unwrap();
-    let mut with_grains = Run::new(common::configuration(
-        "frictionless",
-        "drive.strain_rate=0 run.duration=5 grains.number=10",
-    ))
-    .unwrap();
-    while !with_grains.is_complete() {
-        with_grains.advance().unwrap();
-    }
+    let settings = "drive.strain_rate=0 run.duration=5 grains.number=10";
+    let with_grains = Run::new(common::configuration("frictionless", settings)).unwrap();
+    let with_grains = common::finish(with_grains);
     assert!(!with_grains.recorder().waves().is_empty());
     for run in [run, with_grains] {
         let refusal = space_time(&run).unwrap_err().to_string();
@@ -400,10 +395,7 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
 #[test]
 fn the_space_time_diagram_has_a_row_a_wave_and_a_column_a_period() {
     let settings = "tube.waves=3 grains.number=30 run.periods=4";
-    let mut run = Run::new(common::configuration("frictionless", settings)).unwrap();
-    while !run.is_complete() {
-        run.advance().unwrap();
-    }
+    let run = common::finish(Run::new(common::configuration("frictionless", settings)).unwrap());
     assert_eq!(run.recorder().waves().len(), 12);
     let drawing = space_time(&run).unwrap();
     assert!(drawing.svg().contains("number of the wave"));

@@ -4,6 +4,7 @@
 
 mod common;
 
+use common::finish;
 use peristalsis_run::{
     Run, RunError, RunFolder, Status, Summary, profile_table, snapshot_table, timeseries_table,
     waves_table,
@@ -40,13 +41,6 @@ fn models() -> Vec<(&'static str, String)> {
         }
     }
     models
-}
-
-fn finish(mut run: Run) -> Run {
-    while !run.is_complete() {
-        run.advance().expect("no case diverges");
-    }
-    run
 }
 
 #[test]

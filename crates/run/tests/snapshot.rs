@@ -14,10 +14,7 @@ fn spheres_are_turned_along_the_wave() {
             "grains.number=100 run.periods=0.1 drive.direction=backward",
         ),
     ] {
-        let mut run = Run::new(common::configuration(preset, settings)).unwrap();
-        while !run.is_complete() {
-            run.advance().unwrap();
-        }
+        let run = common::finish(Run::new(common::configuration(preset, settings)).unwrap());
         let table = snapshot_table(&run).unwrap();
         let simulation = run.simulation();
         let bodies = simulation.bodies();

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::configuration;
+use common::{configuration, finish};
 use peristalsis_configuration::ScheduledParameter;
 use peristalsis_observe::Sample;
 use peristalsis_run::{Configuration, Run, RunError, RunFolder, Status, Summary};
@@ -232,10 +232,7 @@ fn a_drive_pauses_and_goes_on() {
         let words = format!("{settings} {schedule} drive.strain_rate={rate} run.periods=4");
         let mut configuration = configuration(preset, &words);
         configuration.observe.late_fraction = 1.0;
-        let mut run = Run::new(configuration).unwrap();
-        while !run.is_complete() {
-            run.advance().expect("does not diverge");
-        }
+        let run = finish(Run::new(configuration).unwrap());
         let samples = run.recorder().samples();
         let period = run.configuration().drive.period().unwrap();
         let since = |periods: f64| move |it: &&Sample| it.time > (periods - 1e-6) * period;

@@ -85,7 +85,7 @@ fn frames_show_the_simulation_as_it_is_and_change_nothing_of_it() {
         let mut trajectory = Trajectory::begin(place.path(), plan.clone(), &mut run).unwrap();
         go_on(&mut run, &mut trajectory, usize::MAX);
 
-        let mut plain = Run::new(configuration.clone()).unwrap();
+        let plain = Run::new(configuration.clone()).unwrap();
         let frames = read_lammps(place.path());
         assert_eq!(frames.len() as u64, plan.frames());
         assert!(frames.len() > 10);
@@ -109,9 +109,7 @@ fn frames_show_the_simulation_as_it_is_and_change_nothing_of_it() {
             assert_eq!(spheres.len(), bodies.grains + wall_spheres);
         }
 
-        while !plain.is_complete() {
-            plain.advance().unwrap();
-        }
+        let plain = common::finish(plain);
         assert_eq!(plain.simulation().bodies(), run.simulation().bodies());
         assert!(timeseries_table(&plain).unwrap() == timeseries_table(&run).unwrap());
     }

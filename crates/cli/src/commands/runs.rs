@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use peristalsis_configuration::{Configuration, Control, HOUR};
+use peristalsis_configuration::{Configuration, HOUR};
 use peristalsis_run::{RunFolder, files};
 use serde_json::{Value, json};
 
@@ -95,7 +95,7 @@ fn entry(path: &Path) -> Value {
         .as_f64()
         .filter(|_| configuration.run.periods.is_some())
         .map(|time| time * configuration.drive.strain_rate);
-    let (drive, amplitude) = amplitude(&configuration);
+    let (drive, amplitude) = configuration.drive.control.amplitude();
     let (mass_flow, mass_flow_error, mass_flow_unit) = mass_flow(&of("si"), &of("open"));
     json!({
         "folder": folder,
@@ -141,16 +141,6 @@ fn mass_flow(si: &Value, open: &Value) -> (Option<f64>, Option<f64>, Option<&'st
         number(open, "discharge_rate_error"),
         rate.map(|_| "m/t"),
     )
-}
-
-/// The key of the wave's amplitude, and its value.
-fn amplitude(configuration: &Configuration) -> (&'static str, f64) {
-    match configuration.drive.control {
-        Control::Strain { width } => ("width", width),
-        Control::Stress {
-            force_amplitude, ..
-        } => ("force_amplitude", force_amplitude),
-    }
 }
 
 /// The status of a run that goes on, was killed, or is to be longer than it is.

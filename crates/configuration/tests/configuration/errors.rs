@@ -3,7 +3,7 @@
 use peristalsis_configuration::{Configuration, ConfigurationError, Problem, ProblemKind, Sources};
 use serde_json::Value;
 
-use crate::{NO_OVERRIDES, only_problem, read};
+use crate::{NO_OVERRIDES, only_problem, read, rows};
 
 /// A whole file without a preset; the lines are counted below.
 const FILE: &str = r#"[grains]
@@ -125,17 +125,6 @@ form = 'course', at = [0, 1] | | { form | a course needs both
 form = 'course', at = [1, 1, 1], values = [2.5, 2.6, 2.7] | .at[2] | 1 | do not ascend (two may be equal)
 form = 'ramp', parameter = 'force_amplitude', end = 2 | .parameter | 'force_amplitude' | drive.control = "stress"
 "#;
-
-/// The rows of a table, each with its cells; cells that are left out are empty.
-fn rows<const COLUMNS: usize>(table: &str) -> impl Iterator<Item = [&str; COLUMNS]> {
-    let lines = table.lines().filter(|line| !line.is_empty());
-    lines.map(|line| {
-        let mut cells = line.split('|').map(str::trim);
-        let row = [(); COLUMNS].map(|()| cells.next().unwrap_or_default());
-        assert_eq!(cells.next(), None, "{line}");
-        row
-    })
-}
 
 /// The file after some changes.
 fn changed(changes: &str) -> String {

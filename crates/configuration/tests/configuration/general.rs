@@ -1,17 +1,13 @@
 //! Rolling resistance and cohesion as they are given, and the kernel that they need.
 
-use peristalsis_configuration::{Cohesion, Configuration, Kernel, Problem, ProblemKind};
+use peristalsis_configuration::{Cohesion, Configuration, Kernel, ProblemKind};
 
-use crate::{preset, read, schema_errors};
+use crate::{only_problem, preset, read, record, refuses};
 
 const ROUGH: [&str; 2] = [
     "contact.static_friction=0.5",
     "contact.rolling_friction=0.1",
 ];
-
-fn only_problem(name: &str, settings: &[&str]) -> Problem {
-    crate::only_problem(read(None, Some(name), settings))
-}
 
 fn frictional(settings: &[&str]) -> Configuration {
     preset("frictional", settings)
@@ -48,12 +44,7 @@ fn what_is_given_reads_back_and_takes_the_reference_kernel() {
         assert!(found.contact.is_general() && found.reference_only().is_some());
         assert_eq!(found.run.kernel, Kernel::Reference);
         assert_ne!(found.physics_hash(), frictional(&[]).physics_hash());
-        let text = found.to_toml();
-        assert!(schema_errors(&text).is_empty(), "{text}");
-        assert_eq!(
-            Configuration::from_toml("config.toml", &text).unwrap(),
-            found
-        );
+        record(&found);
     }
     let rolling = frictional(&ROUGH).contact.rolling.unwrap();
     assert_eq!(
@@ -63,50 +54,19 @@ fn what_is_given_reads_back_and_takes_the_reference_kernel() {
 }
 
 #[test]
-fn a_fast_kernel_that_is_asked_for_is_refused() {
-    let settings = ["contact.surface_energy=0.001", "run.kernel=\"fast\""];
-    let problem = only_problem("frictional", &settings);
-    assert_eq!(problem.key.as_deref(), Some("run.kernel"));
-    assert!(
-        problem
-            .to_string()
-            .contains("the reference kernel alone computes cohesion")
-    );
-}
-
-#[test]
 fn what_no_law_has_is_refused_at_its_key() {
-    for (name, settings, key) in [
-        (
-            "frictionless",
-            &["contact.rolling_friction=0.1"][..],
-            "contact.rolling_friction",
-        ),
-        (
-            "frictionless",
-            &["contact.surface_energy=0.1"],
-            "contact.surface_energy",
-        ),
-        (
-            "frictional",
-            &["contact.cohesion_range=0.1"],
-            "contact.cohesion_range",
-        ),
-        (
-            "frictional",
-            &["contact.cohesion_force=0.1", "contact.pull_off=\"force\""],
-            "contact.pull_off",
-        ),
-        (
-            "frictional",
-            &["contact.cohesion_force=0.1", "contact.surface_energy=0.1"],
-            "contact.surface_energy",
-        ),
-    ] {
-        let problem = only_problem(name, settings);
-        assert_eq!(problem.kind, ProblemKind::Inconsistent, "{problem}");
-        assert_eq!(problem.key.as_deref(), Some(key), "{problem}");
-    }
+    refuses(
+        "
+frictionless | contact.rolling_friction=0.1 | contact.rolling_friction | Inconsistent
+frictionless | contact.surface_energy=0.1 | contact.surface_energy | Inconsistent
+frictional | contact.cohesion_range=0.1 | contact.cohesion_range | Inconsistent
+frictional | contact.cohesion_force=0.1; contact.pull_off=force | contact.pull_off | Inconsistent
+frictional | contact.cohesion_force=0.1; contact.surface_energy=0.1 | contact.surface_energy | Inconsistent
+frictional | contact.surface_energy=0.001; run.kernel=fast | run.kernel | Inconsistent | the reference kernel alone computes cohesion
+frictional | units.surface_energy=0.05 | units.surface_energy | Missing
+frictional | grains.diameter_spread=0.2 | grains.diameter_spread | Conflict
+",
+    );
 }
 
 /// Beads of 1 mm with 1 kg/m^3 pi/6 d^3 of mass: N and J/m^2 by hand.
@@ -124,8 +84,6 @@ fn cohesion_in_si() {
     assert!((cohesion_force - 1e-4).abs() < 1e-16, "{cohesion_force}");
     let Cohesion { surface_energy, .. } = cohesion(with("units.surface_energy=0.05"));
     assert!((surface_energy - 5e-5).abs() < 1e-16, "{surface_energy}");
-    let alone = only_problem("frictional", &["units.surface_energy=0.05"]);
-    assert_eq!(alone.kind, ProblemKind::Missing);
 }
 
 #[test]
@@ -154,12 +112,7 @@ fn sizes_of_every_form_read_back() {
         ),
     ] {
         let found = frictional(&[&bounds[..], settings].concat());
-        let text = found.to_toml();
-        assert!(schema_errors(&text).is_empty(), "{text}");
-        assert_eq!(
-            Configuration::from_toml("config.toml", &text).unwrap(),
-            found
-        );
+        record(&found);
         let sizes = found.grains.distribution();
         assert!(
             (sizes.mean(1) - mean).abs() < 2e-3,
@@ -178,25 +131,15 @@ fn sizes_of_every_form_read_back() {
 
 #[test]
 fn sizes_that_are_not_whole_are_refused() {
-    let bounds = ["grains.diameter_min=0.5", "grains.diameter_max=1"];
-    for settings in [
-        &["grains.sizes=\"lognormal\""][..],
-        &["grains.sizes=\"two\""],
-        &[
-            "grains.sizes=\"two\"",
-            "grains.large_fraction=0.1",
-            "grains.diameter_min=1",
-        ],
-        &["grains.sizes=\"table\"", "grains.diameters=[0.6]"],
-        &[
-            "grains.sizes=\"lognormal\"",
-            "grains.diameter_spread=0.2",
-            "grains.diameter_median=2",
-        ],
-    ] {
-        let problem = only_problem("frictional", &[&bounds[..], settings].concat());
-        assert_eq!(problem.kind, ProblemKind::Inconsistent, "{problem}");
-    }
+    refuses(
+        "
+frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=lognormal | grains.sizes | Inconsistent
+frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=two | grains.sizes | Inconsistent
+frictional | grains.diameter_min=1; grains.diameter_max=1; grains.sizes=two; grains.large_fraction=0.1 | grains.sizes | Inconsistent
+frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=table; grains.diameters=[0.6] | grains.sizes | Inconsistent
+frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=lognormal; grains.diameter_spread=0.2; grains.diameter_median=2 | grains.sizes | Inconsistent
+",
+    );
     let file = std::env::temp_dir().join(format!("peristalsis-sizes-{}.csv", std::process::id()));
     let name = format!("grains.file={:?}", file.to_str().unwrap());
     for (line, key) in [
@@ -205,7 +148,8 @@ fn sizes_that_are_not_whole_are_refused() {
         ("2, -0.5", "fractions"),
     ] {
         std::fs::write(&file, format!("diameter,fraction\n1,0.5\n{line}\n")).unwrap();
-        let problem = only_problem("frictional", &["grains.sizes=\"table\"", &name]);
+        let settings = ["grains.sizes=\"table\"", &name];
+        let problem = only_problem(read(None, Some("frictional"), &settings));
         assert_eq!(problem.kind, ProblemKind::OutOfRange, "{problem}");
         assert!(
             problem.message.contains(&format!("grains.{key}[1]")),
@@ -214,6 +158,4 @@ fn sizes_that_are_not_whole_are_refused() {
         assert_eq!(problem.labels[0].line_and_column().0, 3, "{problem}");
     }
     std::fs::remove_file(&file).unwrap();
-    let problem = only_problem("frictional", &["grains.diameter_spread=0.2"]);
-    assert_eq!(problem.kind, ProblemKind::Conflict, "{problem}");
 }

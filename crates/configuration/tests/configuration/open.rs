@@ -1,8 +1,8 @@
 //! Open tubes: what their keys resolve to, and what is refused.
 
-use peristalsis_configuration::{Configuration, Ends, ProblemKind};
+use peristalsis_configuration::Ends;
 
-use crate::{NO_OVERRIDES, only_problem, preset, read};
+use crate::{NO_OVERRIDES, preset, record, refuses};
 
 #[test]
 fn an_open_tube_has_an_inlet_that_fills_it() {
@@ -14,12 +14,11 @@ fn an_open_tube_has_an_inlet_that_fills_it() {
         (inlet.feed_rate, inlet.velocity, inlet.waiting),
         (None, 0.0, 3)
     );
-    let record = open.to_toml();
+    let record = record(&open);
     assert!(
         record.contains("ends = \"open\"") && record.contains("[inlet]"),
         "{record}"
     );
-    assert_eq!(Configuration::from_toml("record", &record).unwrap(), open);
     // A periodic tube says nothing of its ends, and is the run that it was.
     let plain = preset("frictionless", NO_OVERRIDES);
     assert_eq!((plain.tube.ends, plain.inlet), (Ends::Periodic, None));
@@ -36,59 +35,22 @@ fn a_feed_in_kilograms_an_hour() {
     let grains_a_second = inlet.feed_rate.unwrap() / units.time();
     let mass = open.mean_grain_mass() * units.mass();
     assert!((grains_a_second * mass / 0.01 - 1.0).abs() < 1e-12);
-    let again = Configuration::from_toml("record", &open.to_toml()).unwrap();
-    assert_eq!(again, open);
+    record(&open);
 }
 
 #[test]
 fn open_tubes_that_cannot_be() {
-    let cases: [(&str, &[&str], &str, &str); 9] = [
-        ("frictional", &["tube.ends=open"], "tube.ends", "no ends"),
-        ("frictionless", &["inlet.head=9"], "inlet.head", "tube.ends"),
-        ("frictionless", &["tube.ends=shut"], "tube.ends", "not"),
-        (
-            "frictionless",
-            &["tube.ends=open", "tube.waves=1", "tube.wavelength=6"],
-            "tube.wavelength",
-            "above 7",
-        ),
-        (
-            "frictionless",
-            &["tube.ends=open", "inlet.head=97"],
-            "inlet.head",
-            "longer than",
-        ),
-        (
-            "frictionless",
-            &["tube.ends=open", "inlet.head=5", "inlet.length=6"],
-            "inlet.length",
-            "longer than",
-        ),
-        (
-            "frictionless",
-            &["tube.ends=open", "inlet.waiting=1000"],
-            "inlet.waiting",
-            "wait outside",
-        ),
-        (
-            "silo",
-            &["drive.direction=backward"],
-            "tube.ends",
-            "no weight",
-        ),
-        (
-            "silo",
-            &["inlet.feed_rate=1", "units.feed_rate=1"],
-            "inlet.feed_rate",
-            "exclude one another",
-        ),
-    ];
-    for (preset, settings, key, message) in cases {
-        let found = only_problem(read(None, Some(preset), settings));
-        assert_eq!(found.key.as_deref(), Some(key), "{found:?}");
-        let text = format!("{} {:?}", found.message, found.help);
-        assert!(text.contains(message), "{found:?}");
-    }
-    let found = only_problem(read(None, Some("frictional"), &["tube.ends=open"]));
-    assert_eq!(found.kind, ProblemKind::Inconsistent);
+    refuses(
+        "
+frictional | tube.ends=open | tube.ends | Inconsistent | no ends
+frictionless | inlet.head=9 | inlet.head | Conflict | tube.ends
+frictionless | tube.ends=shut | tube.ends | WrongType | not
+frictionless | tube.ends=open; tube.waves=1; tube.wavelength=6 | tube.wavelength | Inconsistent | above 7
+frictionless | tube.ends=open; inlet.head=97 | inlet.head | Inconsistent | longer than
+frictionless | tube.ends=open; inlet.head=5; inlet.length=6 | inlet.length | Inconsistent | longer than
+frictionless | tube.ends=open; inlet.waiting=1000 | inlet.waiting | Inconsistent | wait outside
+silo | drive.direction=backward | tube.ends | Inconsistent | no weight
+silo | inlet.feed_rate=1; units.feed_rate=1 | inlet.feed_rate | Conflict | exclude one another
+",
+    );
 }

@@ -3,7 +3,7 @@
 use peristalsis_configuration::{Configuration, ProblemKind};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
-use crate::{only_problem, preset, read, schema_errors};
+use crate::{only_problem, preset, read, record, refuses, schema_errors};
 
 /// e of two grains of a configuration that meet at a speed.
 fn restitution(configuration: &Configuration, speed: f64) -> f64 {
@@ -43,13 +43,11 @@ fn what_is_resolved_is_the_damping_with_its_bits_and_its_identity() {
         ("frictional", "dissipation_time"),
     ] {
         let found = preset(name, &["contact.restitution=0.6"]);
-        let text = found.to_toml();
+        let text = record(&found);
         assert!(
             text.contains(&format!("\n{key} = ")) && !text.contains("restitution"),
             "{text}"
         );
-        let again = Configuration::from_toml("config.toml", &text).unwrap();
-        assert_eq!(again, found);
         let line = text.lines().find(|line| line.starts_with(key)).unwrap();
         let direct = preset(name, &[format!("contact.{}", line.replace(' ', ""))]);
         assert_eq!(direct.physics_hash(), found.physics_hash());
@@ -98,35 +96,13 @@ fn what_no_restitution_can_be_made_of_is_refused_by_its_key() {
     ];
     // The linear law has the same at any speed.
     preset("frictionless", &still);
-    for (name, settings, said) in [
-        ("frictional", still.as_slice(), "contact.restitution_speed"),
-        (
-            "frictionless",
-            &["contact.restitution_speed=1"],
-            "without contact.restitution",
-        ),
-        (
-            "frictionless",
-            &["contact.restitution=0"],
-            "0.001 or more, at most 1",
-        ),
-        ("frictionless", &["contact.restitution=1.01"], "at most 1"),
-        (
-            "frictionless",
-            &[
-                "contact.restitution=0.1",
-                "contact.normal_stiffness=1e12",
-                "grains.number=4",
-                "grains.diameter_max=1e5",
-                "grains.diameter_min=1e5",
-                "tube.radius=1e5",
-                "tube.wavelength=1e6",
-                "tube.waves=4",
-            ],
-            "contact.normal_damping",
-        ),
-    ] {
-        let problem = only_problem(read(None, Some(name), settings));
-        assert!(problem.to_string().contains(said), "{problem}");
-    }
+    refuses(
+        "
+frictional | drive.strain_rate=0; run.duration=1; contact.restitution=0.9 | contact.restitution | Inconsistent | contact.restitution_speed
+frictionless | contact.restitution_speed=1 | contact.restitution_speed | Inconsistent | without contact.restitution
+frictionless | contact.restitution=0 | contact.restitution | OutOfRange | 0.001 or more, at most 1
+frictionless | contact.restitution=1.01 | contact.restitution | OutOfRange | at most 1
+frictionless | contact.restitution=0.1; contact.normal_stiffness=1e12; grains.number=4; grains.diameter_max=1e5; grains.diameter_min=1e5; tube.radius=1e5; tube.wavelength=1e6; tube.waves=4 | contact.restitution | OutOfRange | contact.normal_damping
+",
+    );
 }

@@ -1,6 +1,6 @@
 //! Driving a run while it goes on.
 
-use peristalsis_configuration::{Configuration, Schedule, ScheduledParameter};
+use peristalsis_configuration::{Configuration, Schedule, ScheduledParameter, word};
 use peristalsis_physics::wall::Schedule as Course;
 
 use super::Run;
@@ -9,15 +9,6 @@ use crate::error::RunError;
 
 /// Largest force amplitude and strain rate, as for the keys of the drive.
 const LARGEST: f64 = 1e6;
-
-/// The key of a parameter of the drive.
-fn key(parameter: ScheduledParameter) -> &'static str {
-    match parameter {
-        ScheduledParameter::Width => "drive.width",
-        ScheduledParameter::ForceAmplitude => "drive.force_amplitude",
-        ScheduledParameter::StrainRate => "drive.strain_rate",
-    }
-}
 
 /// Time from `now` on in which the integral of `frequency` grows by `cycles`; `None` where it never does.
 fn time_of_cycles(frequency: &Course, now: f64, cycles: f64) -> Option<f64> {
@@ -73,7 +64,7 @@ impl Run {
     /// As [`Run::drive_to`], but for a parameter that is under way.
     pub fn check_drive(&self, parameter: ScheduledParameter, value: f64) -> Result<f64, RunError> {
         let refused = |reason: String| Err(RunError::Steering { reason });
-        let name = key(parameter);
+        let name = format!("drive.{}", word(parameter));
         let most = match parameter {
             ScheduledParameter::Width => 2.0 * self.configuration.tube.radius,
             _ => LARGEST,
@@ -126,7 +117,7 @@ impl Run {
             .unwrap_or_else(|| Schedule::resting(parameter, now))
             .going_on(start, start + periods, value);
         let Some(schedule) = going_on else {
-            let reason = format!("{} still follows its schedule", key(parameter));
+            let reason = format!("drive.{} still follows its schedule", word(parameter));
             return Err(RunError::Steering { reason });
         };
         let mut configuration = self.configuration.clone();

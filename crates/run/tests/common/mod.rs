@@ -41,14 +41,20 @@ fn name(kernel: Kernel) -> &'static str {
     }
 }
 
-/// Runs to the end on a kernel.
-pub(crate) fn run(kernel: Kernel, preset: &str, settings: &str, seed: u64) -> Outcome {
-    let settings = format!("{settings} run.kernel={} run.seed={seed}", name(kernel));
-    let mut run = Run::new(configuration(preset, &settings)).expect("the grains of each case fit");
-    assert_eq!(run.simulation().parameters().kernel, kernel);
+/// A run at its end.
+pub(crate) fn finish(mut run: Run) -> Run {
     while !run.is_complete() {
         run.advance().expect("no case diverges");
     }
+    run
+}
+
+/// Runs to the end on a kernel.
+pub(crate) fn run(kernel: Kernel, preset: &str, settings: &str, seed: u64) -> Outcome {
+    let settings = format!("{settings} run.kernel={} run.seed={seed}", name(kernel));
+    let run = Run::new(configuration(preset, &settings)).expect("the grains of each case fit");
+    assert_eq!(run.simulation().parameters().kernel, kernel);
+    let run = finish(run);
     Outcome {
         averages: run.recorder().averages().to_vec(),
         summary: Summary::of(&run, Status::Complete, None),

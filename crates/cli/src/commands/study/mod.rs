@@ -243,7 +243,6 @@ fn store_path(named: &Option<PathBuf>, study: &Specification) -> PathBuf {
     named.clone().unwrap_or_else(usual)
 }
 
-/// Processors of this machine.
 /// Reads a time such as 30m, 1.5h, 90s or 250ms.
 pub(crate) fn time_span(text: &str) -> Result<Duration, String> {
     let letters = text.find(|letter: char| letter.is_ascii_alphabetic());

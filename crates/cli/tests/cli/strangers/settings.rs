@@ -104,22 +104,6 @@ fn overlaps_without_units_are_warned_of() {
     assert!(keys(&summary).contains(&"drive.strain_rate"), "{summary:#}");
 }
 
-#[test]
-fn a_threshold_where_the_run_starts_or_beyond_all_flow_is_warned_of() {
-    let place = Place::new();
-    for settings in [
-        "observe.transition_threshold=0",
-        "observe.transition_threshold=1 initial.state=jammed",
-        "observe.transition_threshold=1.2",
-    ] {
-        let found = place.does(&format!("check SMALL {settings} --json")).json();
-        assert!(
-            keys(&found).contains(&"observe.transition_threshold"),
-            "{settings}: {found:#}"
-        );
-    }
-}
-
 /// COMMAND-LINE, wanted: e, contact time, steps per contact, memory and packing time in `check`; low: rounded numbers.
 #[test]
 fn check_tells_restitution_contacts_memory_and_packing_in_rounded_numbers() {

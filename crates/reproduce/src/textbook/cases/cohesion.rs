@@ -2,12 +2,12 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Pattern, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel};
 use peristalsis_physics::contact::{
     Cohesion, ContactModel, DissipationForm, Normal, NormalLaw, PullOff, ViscoelasticHertz,
 };
 
-use super::plot::{curve, open_if, points};
+use super::plot::{closed_form, named_once, open_if, points};
 use crate::columns::Columns;
 use crate::error::Result;
 use crate::textbook::case::Circumstances;
@@ -82,7 +82,7 @@ fn sticking_speed(pull_off: PullOff) -> f64 {
 }
 
 /// e at a speed over the sticking speed.
-fn closed_form(speed: f64) -> f64 {
+fn restitution_at(speed: f64) -> f64 {
     (1.0 - 1.0 / (speed * speed)).max(0.0).sqrt()
 }
 
@@ -114,7 +114,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
                 let absolute = speed * sticking_speed(cohesion.pull_off);
                 let found = restitution(undamped, means, TIME_STEP, absolute)?;
                 let setting = format!("{kind}, {speed} of the sticking speed, {name}");
-                let expected = closed_form(speed);
+                let expected = restitution_at(speed);
                 let check = Check::absolute("restitution", &setting, expected, found, 0.02);
                 finding.checks.push(check.by("Thornton & Ning 1998"));
                 if means == Means::USUAL {
@@ -160,13 +160,11 @@ fn drawing(rows: &[(PullOff, f64, f64)]) -> ChartFigure {
     for (series, (name, (_, cohesion))) in names.into_iter().zip(NECKS).enumerate() {
         let pull_off = cohesion.pull_off;
         let part = sticking_speed(pull_off) / sticking_speed(PullOff::Displacement);
-        let form = if series == 0 { "closed form" } else { "" };
-        let line = curve(form, &speeds, |speed| closed_form(speed / part));
+        let name_of_form = named_once("closed form", series);
+        let form = closed_form(name_of_form, &speeds, |speed| restitution_at(speed / part));
         let mine = rows.iter().filter(|row| row.0 == pull_off);
         let found = points(name, mine, |row| (row.1, row.2)).series(series);
-        panel = panel
-            .with(line.tint(Tint::Black).pattern(Pattern::Dashed))
-            .with(open_if(series > 0, found));
+        panel = panel.with(form).with(open_if(series > 0, found));
     }
     ChartFigure::new(panel)
 }

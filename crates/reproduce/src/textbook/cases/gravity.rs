@@ -1,14 +1,15 @@
 //! Gravity in any direction: on an incline, in free fall, and on the wall.
 
 use glam::DVec3;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Reference};
 use peristalsis_physics::contact::{ContactModel, CundallStrack, Normal};
 
-use super::plot::points;
+use super::plot::{closed_form, points};
 use super::restitution::spring;
-use super::roll;
+use super::roll::{self, TIME_STEP};
 use crate::columns::Columns;
 use crate::error::Result;
+use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::falling::{borne_weight, fall};
@@ -17,9 +18,6 @@ use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("gravity.md"));
 
-/// \[d/t^2\]
-const GRAVITY: f64 = 1e-4;
-const TIME_STEP: f64 = 0.05;
 const DURATION: f64 = 200.0;
 /// One coefficient: between two of them the start decides what a sphere does.
 const FRICTION: CundallStrack = CundallStrack {
@@ -41,30 +39,15 @@ fn acceleration(slope: f64) -> f64 {
     }
 }
 
-/// A sphere on an incline, from rest.
-struct Row {
-    slope: f64,
-    /// a/g in the second half, after the spring of the contact has come to rest.
-    acceleration: f64,
-}
-
-impl Row {
-    fn simulate(slope: f64, means: Means) -> Result<Self> {
-        let throw = Throw {
-            normal: spring(0.1),
-            friction: FRICTION,
-            rolling: None,
-            gravity: GRAVITY,
-            slope,
-            speed: 0.0,
-        };
-        let course = throw.simulate(means, TIME_STEP, DURATION)?;
-        let [middle, last] = [course.len() / 2, course.len() - 1].map(|step| course[step]);
-        Ok(Self {
-            slope,
-            acceleration: (last.velocity - middle.velocity) / (GRAVITY * (last.time - middle.time)),
-        })
-    }
+/// a/g of a sphere on an incline, from rest.
+fn simulated(slope: f64, means: Means) -> Result<f64> {
+    let throw = Throw {
+        friction: FRICTION,
+        slope,
+        speed: 0.0,
+        ..roll::THROW
+    };
+    throw.late_acceleration(means, TIME_STEP, DURATION)
 }
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
@@ -74,11 +57,11 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         for (kernel, means) in [("fast", means), ("reference", means.by_reference())] {
             circumstances.go_on()?;
             let setting = format!("{}, {kernel} kernel", means.name());
-            let inclines = SLOPES.map(|slope| Row::simulate(slope, means));
-            let inclines = inclines.into_iter().collect::<Result<Vec<Row>>>()?;
-            for row in &inclines {
-                let setting = format!("tan(theta) = {}, {setting}", row.slope);
-                let (expected, found) = (acceleration(row.slope), row.acceleration);
+            let mut inclines = Vec::new();
+            for slope in SLOPES {
+                let setting = format!("tan(theta) = {slope}, {setting}");
+                let (expected, found) = (acceleration(slope), simulated(slope, means)?);
+                inclines.push((slope, found));
                 let check = Check::relative("a/g on an incline", &setting, expected, found, 5e-3);
                 finding.checks.push(check.by("rolling or sliding"));
             }
@@ -91,8 +74,8 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     }
     finding.data = Some(
         Columns::of(&rows)
-            .number("slope", "1", "tan(theta)", |row| row.slope)
-            .number("acceleration", "1", "a/g", |row| row.acceleration)
+            .number("slope", "1", "tan(theta)", |row| row.0)
+            .number("acceleration", "1", "a/g", |row| row.1)
             .table()?,
     );
     finding.figures = vec![PROSE.chart("incline", &[], drawing(&rows))?];
@@ -141,27 +124,15 @@ fn weights(means: Means, setting: &str) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
-fn drawing(rows: &[Row]) -> ChartFigure {
-    let line = |name: &str, from: f64, to: f64| {
-        let slopes: Vec<f64> = (0..=40_u32)
-            .map(|step| from + (to - from) * f64::from(step) / 40.0)
-            .collect();
-        let values: Vec<f64> = slopes.iter().map(|slope| acceleration(*slope)).collect();
-        Line::new(name, &slopes, &values)
-            .tint(Tint::Black)
-            .pattern(Pattern::Dashed)
-    };
+fn drawing(rows: &[(f64, f64)]) -> ChartFigure {
+    let line =
+        |name: &str, from: f64, to: f64| closed_form(name, &spaced(from, to, 41), acceleration);
     let panel = ChartPanel::new("slope tan *θ*", "acceleration *a*/*g*")
         .x_range(0.0..=4.2)
         .y_range(0.0..=1.0)
         .with(line("closed forms", 0.0, STEEPEST_ROLLING))
         .with(line("", STEEPEST_ROLLING * (1.0 + 1e-9), 4.2))
         .with(Reference::vertical(STEEPEST_ROLLING).label("7/2 *μ*"))
-        .with(
-            points("a sphere from rest", rows, |row| {
-                (row.slope, row.acceleration)
-            })
-            .series(0),
-        );
+        .with(points("a sphere from rest", rows, |row| *row).series(0));
     ChartFigure::new(panel)
 }

@@ -1,10 +1,10 @@
 //! Janssen's silo: what the floor bears of a column with friction at the wall.
 
 use peristalsis_analysis::mean_and_error;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Pattern, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Tint};
 use peristalsis_formats::Table;
 
-use super::plot::{curve, named_once, open_if, points};
+use super::plot::{closed_form, curve, named_once, open_if, points};
 use crate::columns::Columns;
 use crate::error::Result;
 use crate::exhibit::spaced;
@@ -215,10 +215,9 @@ fn drawing(rows: &[Row], curves: &[(f64, f64)]) -> ChartFigure {
     let mut panel = ChartPanel::new("filling mass *M* (*m*)", "apparent mass *M*_{app} (*m*)")
         .with(curve("hydrostatic", &fillings, |filling| filling).tint(Tint::Black));
     for (number, (_, saturation)) in curves.iter().enumerate() {
-        let line = curve(named_once("Janssen", number), &fillings, |filling| {
-            janssen(filling, *saturation)
-        });
-        panel = panel.with(line.tint(Tint::Black).pattern(Pattern::Dashed));
+        let name = named_once("Janssen", number);
+        let of = |filling| janssen(filling, *saturation);
+        panel = panel.with(closed_form(name, &fillings, of));
     }
     let frictionless = [0.0].into_iter();
     for (series, friction) in frictionless.chain(FRICTIONS).enumerate() {

@@ -1,6 +1,6 @@
 //! Points and curves of the figures.
 
-use peristalsis_figures::chart::{Line, Points};
+use peristalsis_figures::chart::{Line, Pattern, Points, Tint};
 
 /// Points of measured rows, from the coordinates of each.
 pub(super) fn points<'a, R: 'a>(
@@ -16,6 +16,12 @@ pub(super) fn points<'a, R: 'a>(
 pub(super) fn curve(name: &str, x: &[f64], function: impl Fn(f64) -> f64) -> Line {
     let y: Vec<f64> = x.iter().map(|x| function(*x)).collect();
     Line::new(name, x, &y)
+}
+
+/// The graph of a closed form at these places.
+pub(super) fn closed_form(name: &str, x: &[f64], function: impl Fn(f64) -> f64) -> Line {
+    let line = curve(name, x, function).tint(Tint::Black);
+    line.pattern(Pattern::Dashed)
 }
 
 /// The name of a curve in the first of several panels, so that a legend has it once.

@@ -1,9 +1,9 @@
 //! A sphere thrown without spin slides, and ends up rolling.
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Reference};
 use peristalsis_physics::contact::{CundallStrack, Sliding};
 
-use super::plot::points;
+use super::plot::{closed_form, points};
 use super::restitution::spring;
 use crate::columns::Columns;
 use crate::error::Result;
@@ -22,7 +22,8 @@ pub(super) const FRICTION: CundallStrack = CundallStrack {
     sliding: Sliding::Spring,
 };
 
-const THROW: Throw = Throw {
+/// On a level plane, thrown without spin.
+pub(super) const THROW: Throw = Throw {
     normal: spring(0.1),
     friction: FRICTION,
     rolling: None,
@@ -30,7 +31,7 @@ const THROW: Throw = Throw {
     slope: 0.0,
     speed: 0.02,
 };
-const TIME_STEP: f64 = 0.05;
+pub(super) const TIME_STEP: f64 = 0.05;
 /// Duration over the time that it slides.
 const DURATION: f64 = 2.0;
 
@@ -95,11 +96,7 @@ fn checks(course: &[Instant], setting: &str) -> Vec<Check> {
 fn drawing(course: &[Instant]) -> ChartFigure {
     let ends = [0.0, slip_time()];
     let slowed = THROW.friction.kinetic_friction * THROW.gravity / THROW.speed;
-    let line = |name: &str, of: fn(f64) -> f64| {
-        Line::new(name, &ends, &ends.map(|time| of(slowed * time)))
-            .tint(Tint::Black)
-            .pattern(Pattern::Dashed)
-    };
+    let line = |name: &str, of: fn(f64) -> f64| closed_form(name, &ends, |time| of(slowed * time));
     let series = |name: &str, of: fn(&Instant) -> f64| {
         points(name, course, |row| (row.time, of(row) / THROW.speed))
     };

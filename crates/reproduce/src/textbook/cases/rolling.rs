@@ -1,11 +1,10 @@
 //! Rolling resistance: a sphere on an incline, and one that comes to rest on a plane.
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Reference};
 use peristalsis_physics::contact::RollingResistance;
 
-use super::plot::points;
-use super::restitution::spring;
-use super::roll;
+use super::plot::{closed_form, points};
+use super::roll::{self, TIME_STEP};
 use crate::columns::Columns;
 use crate::error::Result;
 use crate::textbook::case::Circumstances;
@@ -21,16 +20,10 @@ const ROLLING: RollingResistance = RollingResistance {
     rolling_damping: 0.1,
 };
 
-/// On a level plane, thrown without spin.
 const THROW: Throw = Throw {
-    normal: spring(0.1),
-    friction: roll::FRICTION,
     rolling: Some(ROLLING),
-    gravity: 1e-4,
-    slope: 0.0,
-    speed: 0.02,
+    ..roll::THROW
 };
-const TIME_STEP: f64 = 0.05;
 const DURATION: f64 = 400.0;
 /// tan(theta) of the inclines: at all of them the sphere rolls without slip, if it does.
 const SLOPES: [f64; 9] = [0.03, 0.06, 0.09, 0.098, 0.102, 0.12, 0.2, 0.4, 0.8];
@@ -52,13 +45,6 @@ fn acceleration(slope: f64, overlap: f64) -> f64 {
     cosine * (slope - held).max(0.0) / (1.0 + 0.1 / (arm * arm))
 }
 
-/// a/g in the second half of a throw.
-fn late_acceleration(throw: &Throw, means: Means) -> Result<f64> {
-    let course = throw.simulate(means, TIME_STEP, DURATION)?;
-    let [middle, last] = [course.len() / 2, course.len() - 1].map(|step| course[step]);
-    Ok((last.velocity - middle.velocity) / (throw.gravity * (last.time - middle.time)))
-}
-
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut finding = PROSE.described(&[]);
     let mut rows = Vec::new();
@@ -72,7 +58,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
                 ..THROW
             };
             let expected = acceleration(slope, throw.overlap());
-            let found = late_acceleration(&throw, means)?;
+            let found = throw.late_acceleration(means, TIME_STEP, DURATION)?;
             let setting = format!("tan(theta) = {slope}, {name}");
             let quantity = "a/g from rest on an incline";
             let check = Check::absolute(quantity, &setting, expected, found, INCLINE);
@@ -81,7 +67,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
                 rows.push((slope, found));
             }
         }
-        let slowed = -late_acceleration(&THROW, means)?;
+        let slowed = -THROW.late_acceleration(means, TIME_STEP, DURATION)?;
         let expected = 5.0 / 7.0 * ROLLING.rolling_friction;
         let quantity = "deceleration of a sphere that rolls on a plane, over g";
         let check = Check::relative(quantity, name, expected, slowed, 5e-3);
@@ -99,17 +85,11 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
 
 fn drawing(rows: &[(f64, f64)]) -> ChartFigure {
     let slopes: Vec<f64> = (0..=90_u32).map(|step| 0.01 * f64::from(step)).collect();
-    let values: Vec<f64> = slopes
-        .iter()
-        .map(|slope| acceleration(*slope, 0.0))
-        .collect();
-    let closed_form = Line::new("closed form", &slopes, &values)
-        .tint(Tint::Black)
-        .pattern(Pattern::Dashed);
+    let rolls = closed_form("closed form", &slopes, |slope| acceleration(slope, 0.0));
     let panel = ChartPanel::new("slope tan *θ*", "acceleration *a*/*g*")
         .x_range(0.0..=0.9)
         .y_range(-0.02..=0.45)
-        .with(closed_form)
+        .with(rolls)
         .with(Reference::vertical(ROLLING.rolling_friction).label("*μ*_{r}"))
         .with(points("a sphere from rest", rows, |row| *row).series(0));
     ChartFigure::new(panel)

@@ -48,6 +48,21 @@ impl Throw {
         -self.weight().z / self.normal.normal_stiffness
     }
 
+    /// a/g along the plane in the second half of `duration`, after the spring of the contact has come to rest.
+    ///
+    /// # Errors
+    /// Errors of the engine.
+    pub(crate) fn late_acceleration(
+        &self,
+        means: Means,
+        time_step: f64,
+        duration: f64,
+    ) -> Result<f64> {
+        let course = self.simulate(means, time_step, duration)?;
+        let [middle, last] = [course.len() / 2, course.len() - 1].map(|step| course[step]);
+        Ok((last.velocity - middle.velocity) / (self.gravity * (last.time - middle.time)))
+    }
+
     /// The motion at every step up to `duration`.
     ///
     /// # Errors
