@@ -102,6 +102,17 @@ impl Schedule {
         (least, values.into_iter().fold(f64::NEG_INFINITY, f64::max))
     }
 
+    /// What this is in short up to a time in periods: its first and its last value, or the least and the largest where it goes
+    /// beyond these.
+    pub fn extent(&self, periods: f64) -> [f64; 2] {
+        let ends = [self.value(0.0), self.value(periods)];
+        let (least, largest) = self.range(periods);
+        match ends[0].min(ends[1]) > least || ends[0].max(ends[1]) < largest {
+            true => [least, largest],
+            false => ends,
+        }
+    }
+
     /// Value at a time in periods.
     pub fn value(&self, periods: f64) -> f64 {
         match &self.form {
@@ -169,6 +180,12 @@ mod tests {
         let values = [(0.0, 3.0), (1.5, 3.5), (2.0, 4.0), (5.0, 2.5), (9.0, 2.0)];
         assert_values(&course, &values);
         assert_eq!(course.knots(), knots);
+        assert_eq!(course.extent(9.0), [2.0, 4.0], "it goes beyond its ends");
+        assert_eq!(course.extent(2.0), [3.0, 4.0]);
+        assert_eq!(
+            width(ScheduleForm::Ramp([(1.0, 3.0), (5.0, 2.0)])).extent(9.0),
+            [3.0, 2.0]
+        );
     }
 
     #[test]

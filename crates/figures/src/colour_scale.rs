@@ -54,6 +54,8 @@ const LINE: f64 = 8.8;
 const LINES_BESIDE_BAR: f64 = 2.0;
 /// Gap between the numbers of a bar across.
 const ROOM_BETWEEN_LABELS: f64 = 8.0;
+/// Room between the label of a bar across and the number at its left end, where they stand side by side.
+const ROOM_BEFORE_NUMBER: f64 = 4.0;
 /// Part of the sequential palette without the colours that would be lost as lines on white.
 pub(crate) const REACH_ON_WHITE: f64 = 0.9;
 
@@ -171,14 +173,17 @@ impl ColourScale {
         })
     }
 
-    /// How far the numbers of a bar across reach over its right end.
-    pub(crate) fn overhang(&self, width: f64) -> f64 {
-        let over = |tick: &Tick| {
-            let half = Text::new(tick.label.as_ref()?, TICK_SIZE).width / 2.0;
-            Some(half - width * (1.0 - self.axis().fraction(tick.value)))
-        };
-        let ticks = self.ticks_across(width);
-        ticks.iter().filter_map(over).fold(0.0, f64::max)
+    /// How far the numbers of a bar across reach over its left and its right end.
+    pub(crate) fn overhangs(&self, width: f64) -> [f64; 2] {
+        let mut over: [f64; 2] = [0.0; 2];
+        for tick in self.ticks_across(width) {
+            let Some(label) = &tick.label else { continue };
+            let half = Text::new(label, TICK_SIZE).width / 2.0;
+            let place = width * self.axis().fraction(tick.value);
+            over[0] = over[0].max(half - place);
+            over[1] = over[1].max(half - (width - place));
+        }
+        over
     }
 
     fn ticks_up(&self, height: f64) -> Vec<Tick> {
@@ -212,12 +217,22 @@ impl ColourScale {
         }
         outline(layer, area, segments, ink);
         let middle = area.top + area.height / 2.0 + DIGIT_HEIGHT * LABEL_SIZE / 2.0;
-        let end = area.left - BAR_GAP;
-        let lines = self.label_lines(end - from);
+        let room = self.label_room(area.width, area.left - from);
+        let (end, lines) = (from + room, self.label_lines(room));
         for (number, line) in lines.iter().enumerate() {
             let below = (number as f64 - 0.5 * (lines.len() - 1) as f64) * LINE;
-            let text = Text::fitted(line, LABEL_SIZE, end - from);
+            let text = Text::fitted(line, LABEL_SIZE, room);
             layer.text((end, middle + below), Anchor::End, text, ink);
+        }
+    }
+
+    /// Room for the label of a bar across, of all at its left: the last of several lines stands beside the number at the left
+    /// end, and must not run into it.
+    fn label_room(&self, width: f64, all: f64) -> f64 {
+        let room = all - BAR_GAP;
+        match self.label_lines(room).len() {
+            0 | 1 => room,
+            _ => room.min(all - self.overhangs(width)[0] - ROOM_BEFORE_NUMBER),
         }
     }
 
@@ -243,9 +258,10 @@ impl ColourScale {
         lines
     }
 
-    /// How much further down than usual a bar stands so that all lines of its label have room.
-    pub(crate) fn drop(&self, room: f64) -> f64 {
-        let lines = self.label_lines(room).len();
+    /// How much further down than usual a bar of a width stands so that all lines of its label have room, in all the room at
+    /// its left.
+    pub(crate) fn drop(&self, width: f64, room: f64) -> f64 {
+        let lines = self.label_lines(self.label_room(width, room)).len();
         0.5 * LINE * (lines as f64 - LINES_BESIDE_BAR).max(0.0)
     }
 
@@ -359,7 +375,19 @@ mod tests {
         assert_eq!(scale.label_lines(110.0), two);
         let three = ["position in the", "wave frame,", "(*z* − *ct*)/*λ*"];
         assert_eq!(scale.label_lines(60.0), three);
-        assert!(scale.drop(110.0) == 0.0 && scale.drop(60.0) > 0.0);
+        assert!(scale.drop(90.0, 117.0) == 0.0 && scale.drop(90.0, 67.0) > 0.0);
+    }
+
+    /// A pump engineer: the last line of a label ran into the number below the bar's left end.
+    #[test]
+    fn the_last_line_of_a_label_keeps_clear_of_the_number_beside_it() {
+        let label = "axial velocity along the wave, *v_z*/*c*";
+        let scale = ColourScale::new(label, -1.0, 1.0).found(-2.0, 2.0);
+        let [left, _] = scale.overhangs(90.0);
+        assert!(left > BAR_GAP);
+        assert_eq!(scale.label_room(90.0, 400.0), 400.0 - BAR_GAP);
+        assert!(scale.label_lines(110.0).len() > 1);
+        assert!(scale.label_room(90.0, 110.0) < 110.0 - left);
     }
 
     #[test]

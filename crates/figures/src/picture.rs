@@ -1,7 +1,7 @@
 //! A picture of pixels with its key: notes, marks, a scale and a bar of colours.
 
 use crate::colour::{BLACK, Colour, WHITE};
-use crate::colour_scale::{BAR_GAP, ColourScale};
+use crate::colour_scale::ColourScale;
 use crate::drawing::{Anchor, Drawing, Image, Layer, Stroke};
 use crate::error::FigureError;
 use crate::geometry::{Path, Point, Rectangle};
@@ -122,9 +122,8 @@ impl PictureFigure<'_> {
         let area = Rectangle::new((0.0, above), size);
         let (bar_left, bar_width) = self.place_of_bars(area.width);
         let free_from = self.end_of_scale(area.width);
-        let room = bar_left - BAR_GAP - free_from;
-        let drops = self.colours.iter().map(|colours| colours.drop(room));
-        let drops: Vec<f64> = drops.collect();
+        let drop = |colours: &ColourScale| colours.drop(bar_width, bar_left - free_from);
+        let drops: Vec<f64> = self.colours.iter().copied().map(drop).collect();
         let height = area.bottom() + whole(self.space_below() + drops.iter().sum::<f64>());
         let mut drawing = Drawing::new(area.width, height, self.title);
         (drawing.paper, drawing.pixels_per_point) = (page, scale);
@@ -150,7 +149,10 @@ impl PictureFigure<'_> {
     /// Left end and width of the bars of colours on a page of some width.
     fn place_of_bars(&self, page: f64) -> (f64, f64) {
         let width = BAR_WIDTH.min(BAR_PART * page);
-        let overhangs = self.colours.iter().map(|colours| colours.overhang(width));
+        let overhangs = self
+            .colours
+            .iter()
+            .map(|colours| colours.overhangs(width)[1]);
         let left = page - EDGE - overhangs.fold(0.0, f64::max) - width;
         (left, width)
     }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use peristalsis_configuration::{Configuration, Control, Kernel};
 use peristalsis_engine::{Instructions, processors, threads_that_pay};
-use peristalsis_physics::contact::{Impact, NormalLaw};
+use peristalsis_physics::contact::{Impact, Normal, NormalLaw};
 
 use crate::RunError;
 use crate::assemble::{check_number, newtonian_reference, scheduled_wavelengths, walls};
@@ -66,8 +66,9 @@ pub struct Estimate {
     pub contact_time: f64,
     /// Steps in such a contact.
     pub steps_per_contact: f64,
-    /// e of two grains of the mean diameter that meet at the speed of the wave.
-    pub restitution: f64,
+    /// e of two grains of the mean diameter that meet at the speed of the wave; with a static wave `None` where it depends on
+    /// the speed.
+    pub restitution: Option<f64>,
     /// J/Jmax of a Newtonian fluid in this tube, phi = b/a, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
     /// The same in the clear bore, phi = b/(a - d_w/2).
@@ -155,7 +156,8 @@ pub fn estimate_by(
         steps: configuration.run.steps(),
         contact_time: contact_time(configuration),
         steps_per_contact: contact_time(configuration) / configuration.run.time_step,
-        restitution: restitution_at_wave_speed(configuration),
+        restitution: has_restitution(configuration)
+            .then(|| restitution_at_wave_speed(configuration)),
         newtonian_flow_rate_ratio: newtonian.map(|fluid| fluid.0),
         newtonian_flow_rate_ratio_clear_bore: newtonian.and_then(|fluid| fluid.1),
         si: si.map(|units| SiEstimate::of(configuration, units)),
@@ -184,6 +186,11 @@ fn clear_openings(configuration: &Configuration) -> Option<[f64; 2]> {
 /// A warning under the hardest drive of drive.schedule.
 fn in_the_end(warning: Warning) -> Warning {
     warning.under("with the drive at the hardest that drive.schedule comes to,")
+}
+
+/// Whether the speed of the wave decides the restitution, or the law has one for all speeds.
+fn has_restitution(configuration: &Configuration) -> bool {
+    configuration.wave_speed() > 0.0 || matches!(configuration.contact.normal, Normal::Linear(_))
 }
 
 /// e of two grains of the mean diameter that meet at the speed of the wave.

@@ -1,6 +1,7 @@
 //! A configuration in SI, where it says its units.
 
 use peristalsis_configuration::{Configuration, Units};
+use peristalsis_physics::ends::gap;
 
 /// A configuration in SI, before it runs.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -43,7 +44,12 @@ impl SiEstimate {
         let acceleration = units.velocity() / time;
         let hardest = configuration.at_its_hardest();
         let grains = configuration.grains.number as f64;
-        let most = grains * hardest.wave_speed() / configuration.tube.length();
+        // The length that J refers to: of an open tube that between its ends.
+        let gap = configuration
+            .inlet
+            .map_or(0.0, |_| gap(configuration.grains.diameter_max));
+        let length = configuration.tube.length() - gap;
+        let most = grains * hardest.wave_speed() / length;
         Self {
             unit_mass_kg: units.mass(),
             unit_length_m: units.length(),

@@ -402,6 +402,25 @@ fn the_space_time_diagram_has_a_row_a_wave_and_a_column_a_period() {
     assert!(drawing.png().unwrap().len() > 5_000);
 }
 
+/// A pump engineer: the columns of a run with a pause were as wide as all its wavelengths over their number, under a time that
+/// was not that of the flow's figure.
+#[test]
+fn the_space_time_diagram_of_a_wave_that_pauses_has_the_time_of_the_flow() {
+    let pause = "drive.schedule={form='steps',parameter='strain_rate',at=[1,3],values=[0,0.05]}";
+    let settings = format!("tube.waves=3 grains.number=30 run.periods=4 {pause}");
+    let mut run = Run::new(common::configuration("frictionless", &settings)).unwrap();
+    while !run.is_complete() {
+        run.advance().unwrap();
+    }
+    assert!((run.recorder().waves().last().unwrap().period - 2.0).abs() < 1e-9);
+    let numbers = |svg: &str| -> Vec<f64> {
+        let words = svg.split('"');
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    let found = numbers(&space_time(&run).unwrap().svg());
+    assert!(found.contains(&4.0), "{found:?}");
+}
+
 #[test]
 fn contacts_are_drawn_with_a_bar_of_their_forces_and_in_a_section_only_its_own() {
     let settings = "drive.width=1.4 initial.state=jammed tube.waves=2 grains.number=60";

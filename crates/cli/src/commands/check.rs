@@ -75,11 +75,16 @@ fn tube(estimate: &Estimate) -> Vec<String> {
             significant(estimate.contact_time, 3),
             significant(estimate.steps_per_contact, 3)
         ),
-        format!(
-            "restitution       {} of two grains that meet at the speed of the wave",
-            significant(estimate.restitution, 3)
-        ),
     ]);
+    if let Some(restitution) = estimate.restitution {
+        let speed = estimate
+            .period
+            .map_or("any speed", |_| "the speed of the wave");
+        lines.push(format!(
+            "restitution       {} of two grains that meet at {speed}",
+            significant(restitution, 3)
+        ));
+    }
     if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
         let in_bore = estimate.newtonian_flow_rate_ratio_clear_bore;
         let in_bore = in_bore.map(|ratio| format!(", {ratio:.4} in its clear bore"));

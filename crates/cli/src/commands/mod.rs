@@ -23,7 +23,7 @@ use std::sync::{Once, mpsc};
 use std::time::Duration;
 
 pub(crate) use peristalsis_analysis::number::{counted, significant};
-use peristalsis_configuration::{Configuration, InitialState};
+use peristalsis_configuration::{Arrangement, Configuration, InitialState};
 use peristalsis_run::Warning;
 use serde::Serialize;
 
@@ -107,15 +107,7 @@ const PATIENCE: Duration = Duration::from_secs(3);
 /// Packs the grains of a configuration, which may have to settle, and says so on standard error where it takes longer than
 /// one waits for in silence.
 fn packing<T>(configuration: &Configuration, work: impl FnOnce() -> T) -> T {
-    let settling = match configuration.initial.state {
-        InitialState::Settled => " and letting them settle",
-        _ => "",
-    };
-    let words = format!(
-        "packing grains{settling}: it takes long for {} grains among {} spheres of the wall; Ctrl-C ends it",
-        configuration.grains.number,
-        configuration.tube.wall_spheres()
-    );
+    let words = packing_words(configuration);
     let (working, ended) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         scope.spawn(move || {
@@ -129,6 +121,25 @@ fn packing<T>(configuration: &Configuration, work: impl FnOnce() -> T) -> T {
         drop(working);
         outcome
     })
+}
+
+/// That packing takes long.
+fn packing_words(configuration: &Configuration) -> String {
+    let settling = match configuration.initial.state {
+        InitialState::Settled => " and letting them settle",
+        _ => "",
+    };
+    let wall = match configuration.tube.arrangement {
+        Arrangement::Smooth => "in a smooth wall".to_owned(),
+        _ => format!(
+            "among {} spheres of the wall",
+            configuration.tube.wall_spheres()
+        ),
+    };
+    format!(
+        "packing grains{settling}: it takes long for {} grains {wall}; Ctrl-C ends it",
+        configuration.grains.number
+    )
 }
 
 /// A number that reads 0 with so many decimals as 0, which has no sign.
@@ -150,7 +161,21 @@ fn rounded(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{rounded, unsigned_zero};
+    use peristalsis_configuration::Configuration;
+
+    use super::{packing_words, rounded, unsigned_zero};
+
+    /// A pump engineer: grains were packed "among 0 spheres of the wall".
+    #[test]
+    fn a_smooth_wall_has_no_spheres_to_pack_grains_among() {
+        let words = |settings: &[&str]| {
+            packing_words(&Configuration::from_preset("frictionless", settings).unwrap())
+        };
+        let among = "packing grains: it takes long for 203 grains among 1680 spheres of the wall; Ctrl-C ends it";
+        assert_eq!(words(&[]), among);
+        let smooth = words(&["tube.arrangement=smooth"]);
+        assert!(smooth.contains("203 grains in a smooth wall;"), "{smooth}");
+    }
 
     #[test]
     fn a_number_that_reads_zero_has_no_sign() {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use peristalsis_configuration::{Configuration, HOUR};
+use peristalsis_configuration::{Configuration, HOUR, ScheduledParameter};
 use peristalsis_run::{RunFolder, files};
 use serde_json::{Value, json};
 
@@ -96,14 +96,21 @@ fn entry(path: &Path) -> Value {
         .filter(|_| configuration.run.periods.is_some())
         .map(|time| time * configuration.drive.strain_rate);
     let (drive, amplitude) = configuration.drive.control.amplitude();
+    let led = |parameter: ScheduledParameter| {
+        let schedule = configuration.drive.schedule(parameter)?;
+        let periods = configuration.run.periods.unwrap_or(f64::INFINITY);
+        Some(schedule.extent(periods))
+    };
     let (mass_flow, mass_flow_error, mass_flow_unit) = mass_flow(&of("si"), &of("open"));
     json!({
         "folder": folder,
         "grains": configuration.grains.number,
         "seed": configuration.run.seed,
         "strain_rate": configuration.drive.strain_rate,
+        "strain_rate_led": led(ScheduledParameter::StrainRate),
         "drive": drive,
         "amplitude": amplitude,
+        "amplitude_led": led(drive),
         "periods": periods,
         "periods_asked": configuration.run.periods,
         "time": time,
@@ -211,6 +218,15 @@ fn row(run: &Value) -> [String; 10] {
     let number = |key: &str| run[key].as_f64();
     let plain = |key: &str| number(key).map_or("–".to_owned(), |it| it.to_string());
     let few_digits = |key: &str| number(key).map_or("–".to_owned(), rounded);
+    // A constant that drive.schedule replaces says nothing of the run.
+    let drive = |key: &str| match run[format!("{key}_led")].as_array() {
+        Some(led) => {
+            let mut led: Vec<String> = led.iter().filter_map(Value::as_f64).map(rounded).collect();
+            led.dedup();
+            led.join(" to ")
+        }
+        None => few_digits(key),
+    };
     let with_error = |key: &str| {
         let error = number(&format!("{key}_error")).unwrap_or(f64::NAN);
         number(key).map(|value| measured((value, error)))
@@ -218,20 +234,26 @@ fn row(run: &Value) -> [String; 10] {
     let missing = || "–".to_owned();
     let unit = run["mass_flow_unit"].as_str().unwrap_or_default();
     let mass_flow = with_error("mass_flow").map_or_else(missing, |flow| format!("{flow} {unit}"));
+    // Lengths are rounded up to whole samples, and may have any number of digits.
+    let in_thousandths = |key: &str| {
+        number(key).map_or("–".to_owned(), |it| {
+            ((1e3 * it).round() / 1e3).to_string()
+        })
+    };
     let done = |done: &str, asked: &str, unit: &str| {
-        let done = number(done).map_or("–".to_owned(), |it| {
-            let thousandths = (1e3 * it).round() / 1e3;
-            thousandths.to_string()
-        });
-        format!("{done} of {}{unit}", plain(asked))
+        format!(
+            "{} of {}{unit}",
+            in_thousandths(done),
+            in_thousandths(asked)
+        )
     };
     [
         folder,
         plain("grains"),
-        few_digits("strain_rate"),
+        drive("strain_rate"),
         format!(
             "{} {}",
-            few_digits("amplitude"),
+            drive("amplitude"),
             run["drive"].as_str().unwrap_or_default()
         ),
         match number("periods_asked") {

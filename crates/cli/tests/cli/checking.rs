@@ -250,6 +250,29 @@ frictionless drive.schedule=ramp drive.ramp_periods=100 run.periods=10 | drive.s
     }
 }
 
+/// A pump engineer: of an open tube the flow "at most" was that along all of its waves, less than all grains inside can have.
+#[test]
+fn the_largest_flow_of_an_open_tube_is_that_between_its_ends() {
+    let si = &check(&format!("--preset frictionless tube.ends=open {BEADS}"))["si"];
+    let mass = PI / 6.0 * 2500.0 * 1e-9;
+    let expected = 203.0 / 96.0 * 0.5 * mass / mass.sqrt();
+    close(&si["largest_mass_flow_rate_kg_per_s"], expected);
+}
+
+/// A pump engineer: grains of the Hertz law were said to have the restitution 1 in a silo, "at the speed of the wave".
+#[test]
+fn a_static_wave_has_no_speed_that_a_restitution_holds_at() {
+    let silo = "check --preset silo run.duration=1";
+    Place::new()
+        .does(silo)
+        .shows(&["0.970 of two grains that meet at any speed"]);
+    let hertz = "contact.law=hertz units.young_modulus=1e6 contact.restitution_speed=0.01";
+    let told = Place::new().does(&format!("{silo} {hertz}"));
+    assert!(!told.stdout.contains("restitution"), "{}", told.stdout);
+    let json = check(&format!("--preset silo run.duration=1 {hertz}"));
+    assert_eq!(json["restitution"], Value::Null);
+}
+
 #[test]
 fn the_fastest_wave_of_a_schedule_is_the_one_in_si() {
     let led = "drive.schedule={form='ramp',parameter='strain_rate',from=0.01,to=0.1,end=4}";

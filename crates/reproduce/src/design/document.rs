@@ -218,8 +218,9 @@ fn check_together(keys: &Keys, table: &Table, problems: &mut Problems) {
             ProblemKind::Inconsistent,
             "tube.diameter",
             format!(
-                "tube.diameter = {} is less than a grain, {largest}",
-                tube.diameter
+                "tube.diameter = {} is less than a grain, {}",
+                tube.diameter,
+                rounded(largest, 6)
             ),
             "tube.diameter is at least grain.diameter (1 + grain.spread)",
         );

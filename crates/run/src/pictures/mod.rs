@@ -128,8 +128,7 @@ fn particular(configuration: &Configuration) -> Option<String> {
     (!words.is_empty()).then(|| words.join(",  "))
 }
 
-/// A drive parameter as a title shows it: its value, or the first and the last of its schedule, or the range of one that
-/// ends where it begins.
+/// A drive parameter as a title shows it: its value, or the extent of its schedule.
 fn scheduled_value(
     configuration: &Configuration,
     parameter: ScheduledParameter,
@@ -138,14 +137,10 @@ fn scheduled_value(
     match configuration.drive.schedule(parameter) {
         Some(schedule) => {
             let periods = configuration.run.periods.unwrap_or(f64::INFINITY);
-            let (first, last) = match [0.0, periods].map(|time| schedule.value(time)) {
-                [first, last] if first == last => schedule.range(periods),
-                [first, last] => (first, last),
-            };
-            if first == last {
-                return short(first);
+            match schedule.extent(periods) {
+                [first, last] if first == last => short(first),
+                extent => extent.map(short).join(" to "),
             }
-            [first, last].map(short).join(" to ")
         }
         None => short(constant),
     }
@@ -311,12 +306,14 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
         .flat_map(|wave| (0..periods).map(move |period| (wave, period)))
         .map(value)
         .collect();
-    let step = first
-        .period
-        .max(last.period - flows[flows.len() - 1 - waves.min(flows.len() - 1)].period);
-    let x = ((first.period - step).max(0.0), last.period);
+    // In periods of drive.strain_rate, as in the figure of the flow: columns last equally long, also where a schedule changes
+    // how far the wave runs in them.
+    let before_last = &flows[flows.len() - 1 - waves.min(flows.len() - 1)];
+    let step = first.time.max(last.time - before_last.time);
+    let x = [(first.time - step).max(0.0), last.time];
+    let [start, end] = x.map(|time| time * run.configuration().drive.strain_rate);
     // The cell of a wave lies about its number, from 1 as in the viewer.
-    let field = Field::new(&values, waves, x, (0.5, waves as f64 + 0.5));
+    let field = Field::new(&values, waves, (start, end), (0.5, waves as f64 + 0.5));
     let panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::Wave))
         .y_scale(Scale::Counting)
         .with(field);

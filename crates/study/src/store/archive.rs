@@ -13,12 +13,13 @@ use crate::identity::Identity;
 use crate::store::entry::Entry;
 use crate::store::run_files::RunFiles;
 
-/// Content of an archive.
+/// Content of an archive or of a table of rows.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Packed {
     /// Runs in it.
     pub runs: usize,
-    /// Runs that were taken over. An import takes runs that were not finished here and whose hashes check.
+    /// Runs that were taken over. An import takes runs that were not finished here; those of an archive where their hashes
+    /// check.
     pub taken: usize,
     /// Runs of an archive that were left out since they are not finished or their files differ from their seal, with the
     /// reason.

@@ -7,27 +7,24 @@ use std::path::{Path, PathBuf};
 use peristalsis_formats::{FormatError, atomic, csv, hexadecimal, read_table};
 use sha2::{Digest, Sha256};
 
-use super::{Entry, IMPORTED, State, Store, done, set_aside};
+use super::{Entry, IMPORTED, Packed, State, Store, done, set_aside};
 use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::plan::PlannedRun;
 use crate::row::Row;
 
 impl Store {
-    /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many it has.
+    /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many it has, and how many of
+    /// them were taken.
     ///
-    /// The table is copied into the store. A run that is finished here stays as it is. The table is
-    /// refused if a row has other parameters than the study's run of its identity, or none that a finished run has, or if
+    /// A run that is finished here stays as it is, and its row is not taken. The others are copied into the store. The table
+    /// is refused if a row has other parameters than the study's run of its identity, or none that a finished run has, or if
     /// two rows of one identity differ.
     ///
     /// # Errors
     /// [`StudyError::NotRows`] and errors of reading.
-    pub fn import_table(&self, path: &Path) -> Result<usize> {
+    pub fn import_table(&self, path: &Path) -> Result<Packed> {
         let rows = rows_of(path)?;
-        let number = rows.len();
-        let Some(first) = rows.first() else {
-            return Ok(0);
-        };
         let survey = self.survey()?;
         let runs = survey.plan.runs().iter().map(|run| (run.identity, run));
         let runs: HashMap<Identity, &PlannedRun> = runs.collect();
@@ -43,8 +40,24 @@ impl Store {
                 return Err(StudyError::not_rows(path)(reason));
             }
         }
+        let mut index = self.index()?;
+        let known = index.entries()?;
+        let is_new = |row: &&Row| {
+            let entry = known.get(&row.identity());
+            entry.is_none_or(|entry| entry.state != State::Done)
+        };
+        // These alone are copied: `scan` makes the index anew from the copies, and finds each run in one of them.
+        let new: Vec<&Row> = rows.iter().filter(is_new).collect();
+        let packed = Packed {
+            runs: rows.len(),
+            taken: new.len(),
+            ..Packed::default()
+        };
+        let Some((first, others)) = new.split_first() else {
+            return Ok(packed);
+        };
         let mut table = first.table().clone();
-        for row in &rows[1..] {
+        for row in others {
             table.append(row.table().clone())?;
         }
         let text = csv::encode(&table);
@@ -52,16 +65,10 @@ impl Store {
         fs::create_dir_all(&folder).map_err(StudyError::io("make", &folder))?;
         let name = hexadecimal(&Sha256::digest(text.as_bytes())[..8]);
         atomic::write(&folder.join(format!("{name}.csv")), text.as_bytes())?;
-        let mut index = self.index()?;
-        let known = index.entries()?;
-        let is_new = |row: &&Row| {
-            let entry = known.get(&row.identity());
-            entry.is_none_or(|entry| entry.state != State::Done)
-        };
-        let entry_of = |row: &Row| (row.identity(), imported_entry(row, &name));
-        let new: Vec<(Identity, Entry)> = rows.iter().filter(is_new).map(entry_of).collect();
-        index.note(new.iter().map(|(identity, entry)| (*identity, entry)))?;
-        Ok(number)
+        let entry_of = |row: &&Row| (row.identity(), imported_entry(row, &name));
+        let entries: Vec<(Identity, Entry)> = new.iter().map(entry_of).collect();
+        index.note(entries.iter().map(|(identity, entry)| (*identity, entry)))?;
+        Ok(packed)
     }
 
     /// The rows of all imported tables.

@@ -121,23 +121,17 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
     };
     let mut is_whole = true;
     for file in &arguments.files {
-        if is_archive(file) {
-            let packed = store.import_archive(file)?;
-            is_whole &= packed.refused.is_empty();
-            for (identity, reason) in &packed.refused {
-                let file = file.display();
-                say(&format!("run {identity} of {file} is left out: {reason}"));
-            }
-            let (taken, runs, file) = (packed.taken, counted(packed.runs, "run"), file.display());
-            print(&format!("{taken} of {runs} taken from {file}\n"))?;
-        } else {
-            let rows = store.import_table(file)?;
-            print(&format!(
-                "{} taken from {}\n",
-                counted(rows, "row"),
-                file.display()
-            ))?;
+        let (packed, what) = match is_archive(file) {
+            true => (store.import_archive(file)?, "run"),
+            false => (store.import_table(file)?, "row"),
+        };
+        is_whole &= packed.refused.is_empty();
+        for (identity, reason) in &packed.refused {
+            let file = file.display();
+            say(&format!("run {identity} of {file} is left out: {reason}"));
         }
+        let (taken, all, file) = (packed.taken, counted(packed.runs, what), file.display());
+        print(&format!("{taken} of {all} taken from {file}\n"))?;
     }
     Ok(code_of(is_whole))
 }

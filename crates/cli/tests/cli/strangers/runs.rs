@@ -415,6 +415,13 @@ fn seeds_and_runs_tell_the_mass_flow() {
     place.does(&format!("{silo} silo")).shows(&flows);
     let json = place.does("runs silo --json").json();
     assert_eq!(json[0]["mass_flow_unit"], "kg/h");
+    // "the tube holds ... kg" as a number.
+    let summary = read_json(&place.path("silo/seed-1/summary.json"));
+    let kilograms = summary["si"]["hold_up_kg"].as_f64().unwrap();
+    let unit = std::f64::consts::PI / 6.0 * 2500.0 * 8e-9;
+    let expected = summary["open"]["hold_up"].as_f64().unwrap() * unit;
+    assert!((kilograms / expected - 1.0).abs() < 1e-12, "{kilograms}");
+    assert_eq!(summary["si"]["return_rate_kg_per_s"], 0.0);
     let si = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=100";
     place.does(&format!("run SMALL {si} --out pump"));
     place.does("runs pump").shows(&["mass flow", "kg/h"]);
@@ -424,6 +431,25 @@ fn seeds_and_runs_tell_the_mass_flow() {
     let listed = place.does("runs pump --json").json();
     let per_hour = listed[0]["mass_flow"].as_f64().unwrap();
     assert!((per_hour / 3600.0 - per_second.as_f64().unwrap()).abs() < 1e-15);
+}
+
+/// A pump engineer: a run whose width a schedule leads was listed with a width that it never had, and 7/13 periods with all
+/// their digits.
+#[test]
+fn runs_tell_what_a_schedule_leads_and_lengths_of_few_digits() {
+    let place = Place::new();
+    let course = "{form='course',parameter='width',at=[0,0.2,0.5],values=[2.9,2.5,2.7]}";
+    let samples = "observe.samples_per_period=13 run.periods=0.5";
+    place.does(&format!(
+        "run SMALL {samples} drive.schedule={course} --out led"
+    ));
+    let listed = place.does("runs led");
+    listed.shows(&["2.5 to 2.9 width", "0.538 of 0.538"]);
+    let json = place.does("runs led --json").json();
+    assert_eq!(json[0]["amplitude_led"], serde_json::json!([2.5, 2.9]));
+    assert_eq!(json[0]["strain_rate_led"], Value::Null);
+    let drawn = std::fs::read_to_string(place.path("led/flow.svg")).unwrap();
+    assert!(drawn.contains("2.5 to 2.9"), "the title of its figure");
 }
 
 /// COMMAND-LINE, wanted: replicates that are stopped go on, those that had not begun included.
