@@ -570,16 +570,7 @@ fn questions_of_prescribed_walls_are_answered_by_enough_runs() {
             rings_per_wave: spheres + 2,
         })
     });
-    let of_lengths = [5.0, 10.0, 20.0].map(|waves| {
-        let mut rows = SOURCE.divergence(fine);
-        rows.set("waves", waves);
-        rows.only(|_, numbers| numbers["strain_rate"] == 0.1)
-    });
-    let all = |some: &[Rows]| {
-        let mut all = Rows::default();
-        some.iter().for_each(|one| all.extend(one));
-        all
-    };
+    let of_lengths = of_lengths();
     let divergence = SOURCE.divergence(fine);
     for (id, study, rows) in [
         ("Q1", "small-strain-rate-fine", SOURCE.branches(fine)),
@@ -593,6 +584,31 @@ fn questions_of_prescribed_walls_are_answered_by_enough_runs() {
         let few = rows.only(|_, numbers| numbers["replicate"] < 2.0);
         assert_verdict(&found(&few), Verdict::Open);
     }
+}
+
+/// Where all runs jam up to a width and none from the next on, the range over which they cease to is not 0 but unknown.
+#[test]
+fn a_fall_between_two_widths_has_a_bound_for_its_spread() {
+    let finding = examine("Q4", &rows::evidence(&[("length", &all(&of_lengths()))]));
+    for row in &finding.tables[0].rows {
+        assert_says(&row[2], "< 0.0");
+        assert_says(&row[4], " ± ");
+    }
+}
+
+/// Tubes of three lengths at one strain rate.
+fn of_lengths() -> [Rows; 3] {
+    [5.0, 10.0, 20.0].map(|waves| {
+        let mut rows = SOURCE.divergence(Lattice::FINE);
+        rows.set("waves", waves);
+        rows.only(|_, numbers| numbers["strain_rate"] == 0.1)
+    })
+}
+
+fn all(some: &[Rows]) -> Rows {
+    let mut all = Rows::default();
+    some.iter().for_each(|one| all.extend(one));
+    all
 }
 
 /// Runs from jammed that a study of their own adds to the branches count for the loop.
