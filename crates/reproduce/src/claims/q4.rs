@@ -35,10 +35,7 @@ impl<'a> Tube<'a> {
             .filter(|one| one.observed_fraction() >= MOSTLY_SEEN);
         let times = seen.filter_map(|one| {
             let fit = one.fit?;
-            // Of gamma-distributed times it is 1/k.
-            let shape = fit.shape?;
-            let relative = Uncertain::normal(1.0 / shape.value, shape.error / shape.value.powi(2));
-            Some((one.width, fit.mean, relative))
+            Some((one.width, fit.mean, fit.relative_variance()?))
         });
         (!branch.points.is_empty()).then(|| Self {
             waves,
