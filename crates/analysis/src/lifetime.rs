@@ -40,6 +40,13 @@ impl LifetimeFit {
     pub fn akaike(&self) -> f64 {
         2.0 * self.family.parameters() as f64 - 2.0 * self.log_likelihood
     }
+
+    /// `chi_tau/<tau>^2` of a gamma distribution, 1/k; `None` for the other families.
+    pub fn relative_variance(&self) -> Option<Uncertain> {
+        let shape = self.shape.filter(|_| self.family == Family::Gamma)?;
+        let value = 1.0 / shape.value;
+        Some(Uncertain::normal(value, value * shape.error / shape.value))
+    }
 }
 
 /// Time of a run and whether it is a transition; checked, transitions being at positive times.

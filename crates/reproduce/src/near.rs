@@ -23,6 +23,8 @@ pub(crate) struct Near {
     nearest: Option<Divergence>,
     /// Widths, chi_tau and its errors.
     variance: [Vec<f64>; 3],
+    /// Widths, chi_tau/tau² and its errors.
+    relative: [Vec<f64>; 3],
 }
 
 /// Whether the linear term is there.
@@ -54,6 +56,9 @@ impl Near {
         let number = width.iter().filter(|width| is_near(width)).count();
         let first = width.len().saturating_sub(number.max(STRAIGHT));
         let variance = fits.iter().map(|(width, fit)| (*width, fit.variance));
+        let relative = fits
+            .iter()
+            .filter_map(|(width, fit)| Some((*width, fit.relative_variance()?)));
         let power = fit_law(Law::Power, width, time, error, None).ok();
         Some(Self {
             strain_rate: line.strain_rate,
@@ -62,6 +67,7 @@ impl Near {
             power: power.filter(|fit| fit.critical_width.is_some_and(is_beyond)),
             nearest: line.nearest(),
             variance: columns(variance.filter(|(_, one)| one.value > 0.0), 0.0),
+            relative: columns(relative.filter(|(_, one)| one.value > 0.0), 0.0),
         })
     }
 
@@ -102,16 +108,43 @@ impl Near {
         self.curved.filter(is_clear)
     }
 
-    /// chi_tau ~ (w_c − w)^−beta, about the w_c of alpha = 1, or of the free power where 1/tau has no linear term.
-    pub(crate) fn variance_law(&self) -> Option<LawFit> {
-        let [width, variance, error] = &self.variance;
-        let critical = self.linear_or_free()?;
-        fit_law(Law::Power, width, variance, error, Some(critical)).ok()
+    /// beta of chi_tau ~ (w_c − w)^−beta next to w_c. Where 1/tau = B d + C d² it is 2 + q, chi_tau/tau² ~ d^−q: in a power of
+    /// chi_tau itself the correction C would count twice. Elsewhere it is the power of chi_tau.
+    pub(crate) fn variance_exponent(&self) -> Option<Uncertain> {
+        let exponent = self.scatter_law()?.exponent;
+        // 2 without an error.
+        let twice = Uncertain::normal(-2.0, 0.0);
+        Some(match self.judged() {
+            Some(_) => exponent - twice,
+            None => exponent,
+        })
     }
 
-    /// beta of that law.
-    pub(crate) fn variance_exponent(&self) -> Option<Uncertain> {
-        Some(self.variance_law()?.exponent)
+    /// Power law of chi_tau/tau² where 1/tau = B d + C d², else of chi_tau, about the w_c of alpha = 1, or of the free power
+    /// where 1/tau has no linear term.
+    fn scatter_law(&self) -> Option<LawFit> {
+        let [width, scatter, error] = match self.judged() {
+            Some(_) => &self.relative,
+            None => &self.variance,
+        };
+        let critical = self.linear_or_free()?;
+        fit_law(Law::Power, width, scatter, error, Some(critical)).ok()
+    }
+
+    /// chi_tau at a width by that law and that of tau, and the w_c where it ends.
+    pub(crate) fn variance_law(&self) -> Option<(impl Fn(f64) -> f64 + use<>, f64)> {
+        let law = self.scatter_law()?;
+        let critical = law.critical_width?.value;
+        let judged = self.judged();
+        let at = move |width: f64| {
+            let distance = critical - width;
+            let scatter = (law.ln_amplitude.value - law.exponent.value * distance.ln()).exp();
+            let bend = |curved: InverseFit| curved.quadratic.map_or(0.0, |bend| bend.value);
+            let rate =
+                judged.map(|curved| distance * (curved.linear.value + bend(curved) * distance));
+            scatter / rate.map_or(1.0, |rate| rate * rate)
+        };
+        Some((at, critical))
     }
 
     /// chi_tau (w_c − w)^power, the weighted mean over the widths.

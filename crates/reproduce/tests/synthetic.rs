@@ -18,10 +18,12 @@ struct Tube {
     slope: f64,
     bend: f64,
     wander: f64,
-    /// tau = 200 (epsdot/0.05)^scaling (w_c - w)^-alpha (1 + 4 shape (w_c - w)), and a factor of uneven more or less by turns.
+    /// tau = 200 (epsdot/0.05)^scaling (w_c - w)^-alpha (1 + 4 shape (w_c - w))/(1 + bow (w_c - w)), and a factor of uneven more
+    /// or less by turns.
     alpha: f64,
     scaling: f64,
     shape: f64,
+    bow: f64,
     uneven: f64,
     /// The relative variance of tau goes as epsdot^(3/2) (w_c - w)^-roughens.
     roughens: f64,
@@ -45,6 +47,7 @@ const SOURCE: Tube = Tube {
     alpha: 1.0,
     scaling: -2.0,
     shape: 0.0,
+    bow: 0.0,
     uneven: 1.0,
     roughens: 1.0,
     slow: 0.3,
@@ -83,7 +86,7 @@ impl Tube {
         let tau = if distance > 0.0 && start == Start::Rest {
             let factor = (1.0 + 4.0 * self.shape * distance) * self.uneven.powf(turn(rate));
             let mean = 200.0 * (rate / 0.05).powf(self.scaling) * distance.powf(-self.alpha);
-            let mean = mean * factor;
+            let mean = mean * factor / (1.0 + self.bow * distance);
             let variance = 0.0125 * rate.powf(1.5) * distance.powf(-self.roughens);
             let deviation = variance.sqrt().min(0.4);
             mean * (1.0 + deviation * normal(replicate)).max(0.05)
@@ -323,6 +326,21 @@ fn each_part_of_a_claim_can_fail_alone() {
     let found = examine("F8", &rows::evidence(&[("density-fine", &rows)]));
     assert_verdict(&found, Verdict::Differs);
     assert_says(&found.walls[0].why, "*w*_{c} depends on it");
+}
+
+/// 1/tau has a correction next to w_c, and chi_tau has it twice; chi_tau/tau^2 goes as 1/(w_c - w).
+#[test]
+fn a_correction_of_the_times_leaves_the_power_of_their_scatter() {
+    for (roughens, says) in [(1.0, "*β* = 3 holds"), (0.0, "*β* = 3 does not hold")] {
+        let tube = Tube {
+            bow: 20.0,
+            roughens,
+            ..SOURCE
+        };
+        let mut evidence = rows::evidence(&[]);
+        tube.on(Lattice::FINE, "fine", &mut evidence);
+        assert_says(&examine("F4", &evidence).walls[0].why, says);
+    }
 }
 
 /// With runs enough a claim is open where strain rates are divided, or where its numbers are too uncertain to tell.
@@ -570,16 +588,7 @@ fn questions_of_prescribed_walls_are_answered_by_enough_runs() {
             rings_per_wave: spheres + 2,
         })
     });
-    let of_lengths = [5.0, 10.0, 20.0].map(|waves| {
-        let mut rows = SOURCE.divergence(fine);
-        rows.set("waves", waves);
-        rows.only(|_, numbers| numbers["strain_rate"] == 0.1)
-    });
-    let all = |some: &[Rows]| {
-        let mut all = Rows::default();
-        some.iter().for_each(|one| all.extend(one));
-        all
-    };
+    let of_lengths = of_lengths();
     let divergence = SOURCE.divergence(fine);
     for (id, study, rows) in [
         ("Q1", "small-strain-rate-fine", SOURCE.branches(fine)),
@@ -593,6 +602,31 @@ fn questions_of_prescribed_walls_are_answered_by_enough_runs() {
         let few = rows.only(|_, numbers| numbers["replicate"] < 2.0);
         assert_verdict(&found(&few), Verdict::Open);
     }
+}
+
+/// Where all runs jam up to a width and none from the next on, the range over which they cease to is not 0 but unknown.
+#[test]
+fn a_fall_between_two_widths_has_a_bound_for_its_spread() {
+    let finding = examine("Q4", &rows::evidence(&[("length", &all(&of_lengths()))]));
+    for row in &finding.tables[0].rows {
+        assert_says(&row[2], "< 0.0");
+        assert_says(&row[4], " ± ");
+    }
+}
+
+/// Tubes of three lengths at one strain rate.
+fn of_lengths() -> [Rows; 3] {
+    [5.0, 10.0, 20.0].map(|waves| {
+        let mut rows = SOURCE.divergence(Lattice::FINE);
+        rows.set("waves", waves);
+        rows.only(|_, numbers| numbers["strain_rate"] == 0.1)
+    })
+}
+
+fn all(some: &[Rows]) -> Rows {
+    let mut all = Rows::default();
+    some.iter().for_each(|one| all.extend(one));
+    all
 }
 
 /// Runs from jammed that a study of their own adds to the branches count for the loop.

@@ -148,3 +148,19 @@ fn what_cannot_be_fitted_is_refused() {
         assert_refused!(fit_lifetime(family, &[at(2.0); 6]) => NoScatter { observed: 6 });
     }
 }
+
+#[test]
+fn the_relative_variance_of_gamma_times_follows_from_the_shape_alone() {
+    let mut randomness = Randomness::new(1, 2);
+    let sample = watched_runs(30, 20.0, || three_steps(&mut randomness, 10.0));
+    let fit = fit_lifetime(Family::Gamma, &sample).unwrap();
+    let found = fit.relative_variance().unwrap();
+    let by_moments = fit.variance.value / (fit.mean.value * fit.mean.value);
+    assert!((found.value - by_moments).abs() < 1e-9);
+    // ln 1/k has the error of ln k, less than that of the variance.
+    let shape = fit.shape.unwrap();
+    assert!((found.error / found.value - shape.error / shape.value).abs() < 1e-12);
+    assert!(found.error / found.value < fit.variance.error / fit.variance.value);
+    let other = fit_lifetime(Family::Weibull, &sample).unwrap();
+    assert!(other.relative_variance().is_none());
+}

@@ -121,13 +121,8 @@ fn variances(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
         };
         drawn = true;
         panel = panel.with(points.tint(Tint::Value(line.strain_rate)));
-        let law = line.near.as_ref().and_then(Near::variance_law);
-        if let Some((law, critical)) = law.and_then(|law| Some((law, law.critical_width?.value))) {
-            let at = |width: f64| {
-                let ln_distance = (critical - width).ln();
-                let ln_variance = law.ln_amplitude.value - law.exponent.value * ln_distance;
-                ln_variance.exp() * squared
-            };
+        if let Some((law, critical)) = line.near.as_ref().and_then(Near::variance_law) {
+            let at = |width: f64| law(width) * squared;
             panel = panel.with_all(fitted_curve(line, critical, &variances, at));
         }
     }

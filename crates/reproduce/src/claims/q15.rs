@@ -19,6 +19,8 @@ const WALL_SPHERE: f64 = 1.0;
 const OPEN: f64 = 3.9;
 /// The outlet plane lies so far below the middle of the narrowest place of the studies' silo \[d\].
 const BELOW: f64 = 1.0;
+/// Part of a run over an outlet that is late: `observe.late_fraction` of both studies.
+const LATE: f64 = 0.5;
 
 /// The runs at one value of what a study varies.
 struct Point {
@@ -30,7 +32,7 @@ struct Point {
     hold_up: Uncertain,
     /// Runs whose outlet lets nothing through at the end, and all.
     blocked: (usize, usize),
-    /// Mass that all of them discharged \[m\].
+    /// Mass that all of them discharged before their late part, in which an arch is not seen \[m\].
     discharged: f64,
 }
 
@@ -40,12 +42,15 @@ impl Point {
         let of = |(at, rows): (f64, Vec<Row<'_>>)| {
             let flows = |row: &Row<'_>| row.number("discharge_rate") > 0.0;
             let flowing: Vec<Row<'_>> = rows.iter().copied().filter(flows).collect();
+            let early = |row: &Row<'_>| {
+                row.number("discharged") - LATE * row.time() * row.number("discharge_rate")
+            };
             Self {
                 at,
                 rate: mean(&flowing, "discharge_rate").unwrap_or(Uncertain::normal(0.0, 0.0)),
                 hold_up: mean(&rows, "hold_up").unwrap_or(Uncertain::normal(f64::NAN, f64::NAN)),
                 blocked: (rows.len() - flowing.len(), rows.len()),
-                discharged: rows.iter().map(|row| row.number("discharged")).sum(),
+                discharged: rows.iter().map(early).sum(),
             }
         };
         groups.map(of).collect()
@@ -60,8 +65,9 @@ impl Point {
         format!("{}/{}", self.blocked.0, self.blocked.1)
     }
 
-    /// Mean mass between two arches, M \[m\]: the likeliest of an exponential distribution of which the runs that still flow
-    /// are censored, the mass of all runs over the arches; its error is M over the root of their number. `None` without one.
+    /// Mean mass between two arches, M \[m\]: the likeliest of an exponential distribution of which the runs that flow on in
+    /// their late part are censored where it begins, the mass of all runs until then over the arches; its error is M over the
+    /// root of their number. `None` without one.
     fn mean_mass(&self) -> Option<Uncertain> {
         let arches = self.blocked.0 as f64;
         let mass = self.discharged / arches;

@@ -19,7 +19,7 @@ struct Tube<'a> {
     branch: Branch<'a>,
     critical: Option<FractionCrossing>,
     /// Mean transition time and relative variance by width, where most runs had a transition.
-    times: Vec<(f64, Uncertain, f64)>,
+    times: Vec<(f64, Uncertain, Uncertain)>,
 }
 
 impl<'a> Tube<'a> {
@@ -35,8 +35,7 @@ impl<'a> Tube<'a> {
             .filter(|one| one.observed_fraction() >= MOSTLY_SEEN);
         let times = seen.filter_map(|one| {
             let fit = one.fit?;
-            let relative = fit.variance.value / fit.mean.value.powi(2);
-            Some((one.width, fit.mean, relative))
+            Some((one.width, fit.mean, fit.relative_variance()?))
         });
         (!branch.points.is_empty()).then(|| Self {
             waves,
@@ -47,15 +46,30 @@ impl<'a> Tube<'a> {
         })
     }
 
+    /// Mean relative variance over the widths; `None` without one.
+    fn relative_variance(&self) -> Option<Uncertain> {
+        let widths = self.times.len() as f64;
+        let sum: f64 = self.times.iter().map(|one| one.2.value).sum();
+        let squares: f64 = self.times.iter().map(|one| one.2.error.powi(2)).sum();
+        (widths > 0.0).then(|| Uncertain::normal(sum / widths, squares.sqrt() / widths))
+    }
+
     fn row(&self) -> Vec<String> {
-        let sum: f64 = self.times.iter().map(|one| one.2).sum();
         vec![
             self.waves.to_string(),
             cell(self.critical.as_ref().map(|found| found.width)),
-            cell_of(self.critical.as_ref(), |found| number(found.spread, 4)),
+            cell_of(self.critical.as_ref(), spread),
             cell(self.branch.jump().map(|jump| jump.height)),
-            number(sum / self.times.len() as f64, 4),
+            cell(self.relative_variance()),
         ]
+    }
+}
+
+/// The range of widths over which the fraction falls; where the runs are separated only a bound is known.
+fn spread(found: &FractionCrossing) -> String {
+    match found.last_all.zip(found.first_none) {
+        Some((last, first)) if found.is_separated => format!("< {}", number(first - last, 4)),
+        _ => number(found.spread, 4),
     }
 }
 
