@@ -538,6 +538,8 @@ class OpenSummary(TypedDict):
     leaked: float | None
     """mass of the grains that have gone through the wall of an open tube, and past one of its ends, since the start
     [m]"""
+    transits: float | None
+    """grains that have gone all the way from the inlet to the outlet in the run"""
     transit_time: float | None
     """mean time from the inlet to the outlet of the grains that have gone all the way in the run [t]"""
     transit_time_error: float | None
@@ -582,6 +584,14 @@ class SiSummary(TypedDict):
     """wear_power in SI; missing without the table units [W]"""
     wall_wear_w_per_m2: float | None
     """wall_wear in SI; missing without the table units [W/m^2]"""
+    return_rate_kg_per_s: float | None
+    """return_rate in SI [kg/s]"""
+    return_rate_kg_per_s_error: float | None
+    """its standard error [kg/s]"""
+    hold_up_kg: float | None
+    """hold_up in SI [kg]"""
+    hold_up_kg_error: float | None
+    """its standard error [kg]"""
     transition_time_s: float | None
     """transition_time in SI [s]"""
     residence_time_s: float | None
@@ -712,6 +722,8 @@ class Summary(_Rare):
     """its standard error [m d/t^2]"""
     contact_force_largest: float | None
     """largest normal force at a contact of a grain, at the late moments that were looked at [m d/t^2]"""
+    contact_force_moments: float | None
+    """late moments at which the contact forces were looked at"""
     wall_torque: float | None
     """wall_power over 2 pi f, f the frequency of the wave: torque of a shaft that makes one wave a turn; missing
     for a static wave [m d^2/t^2]"""

@@ -637,8 +637,9 @@ class MomentPeak:
     value : Uncertain
         Height of the peak, with bootstrap errors.
     bias : float
-        Mean height of the resampled peaks less the variance of the n runs themselves there, `value` (n - 1)/n: the largest
-        of many noisy values lies too high, and a resample repeats that. The true height is likely near `value - bias`.
+        Mean height of the resampled peaks less the variance of the n runs themselves there, `value` (n - 1)/n: the
+        largest of many noisy values lies too high, and a resample repeats that. The true height is likely near `value -
+        bias`.
 
     Examples
     --------
