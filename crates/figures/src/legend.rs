@@ -70,10 +70,16 @@ impl Legend {
     /// Sets the entries in the room across that there is, in as few rows as possible.
     pub(crate) fn new(entries: Vec<Entry>, room: f64) -> Self {
         let text = |it: &str| Text::fitted(it, LEGEND_SIZE, room - SAMPLE_WIDTH - SAMPLE_GAP);
-        // Of grids with equally few rows, the one with the fewest columns is the most orderly.
+        let is_titled = entries.first().is_some_and(Entry::is_title);
+        // Of grids with equally few rows, one that leaves the room below a title free is the most orderly, and then the one
+        // with the fewest columns.
         let grid = |widths: &[f64]| {
-            (1..=MOST_COLUMNS)
-                .map(|columns| places(widths, columns, (room + COLUMN_GAP) / columns as f64))
+            let grids = [is_titled, false].into_iter().flat_map(|hangs| {
+                (1..=MOST_COLUMNS).map(move |columns| {
+                    places(widths, columns, (room + COLUMN_GAP) / columns as f64, hangs)
+                })
+            });
+            grids
                 .min_by_key(|places| rows_of(places))
                 .unwrap_or_default()
         };
@@ -167,6 +173,13 @@ impl Legend {
     }
 }
 
+impl Entry {
+    /// Whether it is the title of those behind it, without a sample.
+    fn is_title(&self) -> bool {
+        self.line.is_none() && self.band.is_none() && self.mark.is_none()
+    }
+}
+
 impl Cell {
     /// Distance of the entry's end from the left of the list.
     fn end(&self, sample: f64) -> f64 {
@@ -174,20 +187,31 @@ impl Cell {
     }
 }
 
-/// Place of each entry on a grid of equal columns, filled like lines of text.
-fn places(widths: &[f64], columns: usize, column_width: f64) -> Vec<Place> {
+/// Place of each entry on a grid of equal columns, filled like lines of text; where they hang, later lines begin behind the
+/// first entry, if that leaves room for every other.
+fn places(widths: &[f64], columns: usize, column_width: f64, hangs: bool) -> Vec<Place> {
+    let span = |width: &f64| ((width + COLUMN_GAP) / column_width - 1e-9).ceil().max(1.0);
+    let spans: Vec<usize> = widths
+        .iter()
+        .map(|width| columns.min(span(width) as usize))
+        .collect();
+    let begin = match spans.split_first() {
+        Some((first, others)) if hangs && others.iter().all(|it| first + it <= columns) => *first,
+        _ => 0,
+    };
     let (mut row, mut column) = (0, 0);
-    let mut places = Vec::with_capacity(widths.len());
-    for width in widths {
-        let span = ((width + COLUMN_GAP) / column_width - 1e-9).ceil().max(1.0) as usize;
-        let span = span.min(columns);
+    let place = |span| {
         if column + span > columns {
-            (row, column) = (row + 1, 0);
+            (row, column) = (row + 1, begin);
         }
-        places.push(Place { row, column, span });
         column += span;
-    }
-    places
+        Place {
+            row,
+            column: column - span,
+            span,
+        }
+    };
+    spans.into_iter().map(place).collect()
 }
 
 fn rows_of(places: &[Place]) -> usize {
@@ -231,6 +255,19 @@ mod tests {
         let mixed = entries(&["short", "brief", long]);
         assert_eq!(Legend::new(mixed, 220.0).rows, 2);
         assert_eq!(Legend::new(Vec::new(), 200.0).height(), 0.0);
+    }
+
+    /// Entries of a second row stood below the title and one column beside those of the first.
+    #[test]
+    fn nothing_stands_below_a_title() {
+        let mut titled = entries(&["strain rate:", "0.03", "0.04", "0.05", "0.06"]);
+        titled[0].line = None;
+        let legend = Legend::new(titled, 200.0);
+        assert_eq!(legend.rows, 2);
+        let [_, first, _, below, _] = &legend.cells[..] else {
+            panic!("five entries")
+        };
+        assert_eq!((below.row, below.start), (1, first.start));
     }
 
     #[test]
