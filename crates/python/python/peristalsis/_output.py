@@ -192,7 +192,7 @@ class Output(Drive):
             raise ValueError("a section is at place or at position, not at both")
         places = {"place": place, "position": position}
         places = {name: None if value is None else number(name, value) for name, value in places.items()}
-        width = None if width is None else whole("width", width, 16, 16384)
+        width = None if width is None else whole("width", width, 0, 2**32 - 1)
         options: dict[str, Any] = {
             "view": view, "colour": colour, "range": range, "wall": wall, **places,
             "waves": waves, "width": width, "paper": paper, "bare": bare,

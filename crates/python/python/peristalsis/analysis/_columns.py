@@ -38,12 +38,12 @@ if TYPE_CHECKING:
 
 
 def reals(values: Numbers) -> Array:
-    """A column of numbers."""
+    """A column of numbers, which what the caller does with theirs does not touch."""
     numeric(values, AnalysisError)
-    array = np.asarray(values, dtype=np.float64)
+    array = np.array(values, dtype=np.float64, order="C")
     if array.ndim != 1:
         raise ValueError(f"a column has one dimension, not {array.ndim}")
-    return np.ascontiguousarray(array)
+    return array
 
 
 def columns(*given: Numbers) -> list[Array]:
@@ -63,7 +63,7 @@ def _number(value: Any) -> float:
 
 
 def truths(values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-    """A column of truth values, none of them missing."""
+    """A column of truth values, none of them missing; a copy, as of `reals`."""
     unmasked(values, AnalysisError)
     array = np.asarray(values)
     if array.dtype != bool:
@@ -72,7 +72,7 @@ def truths(values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
                 reason = "true or false (1 or 0) is wanted, and none may be missing"
                 raise AnalysisError(f"value {index} is {value!r}: {reason}")
         array = array.astype(np.float64) == 1.0
-    return np.ascontiguousarray(array)
+    return np.array(array, order="C")
 
 
 def runs(time: Numbers, observed: npt.ArrayLike | None) -> Runs:
