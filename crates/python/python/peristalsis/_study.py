@@ -90,7 +90,8 @@ def _of_text(name: str, text: str, store: str | os.PathLike[str] | None) -> Stud
     """The study of a file's name and text."""
     read = _core.Study(name, text)
     folder = Path("stores", read.name) if store is None else Path(store)
-    return Study(read, folder, (_of_text, (name, text, folder)))
+    # Files that it names are beside it, wherever the process runs that unpickles it.
+    return Study(read, folder, (_of_text, (os.path.abspath(name), text)))
 
 
 class Study:
@@ -125,7 +126,8 @@ class Study:
         self.store: Path = store
 
     def __reduce__(self) -> tuple[Callable[..., Study], tuple[Any, ...]]:
-        return self._made
+        function, arguments = self._made
+        return function, (*arguments, self.store.absolute())
 
     @classmethod
     def open(cls, store: str | os.PathLike[str]) -> Study:
@@ -157,7 +159,7 @@ class Study:
         >>> peristalsis.Study.open(f"{folder}/store").counts()
         {'done': 2}
         """
-        return cls(_core.Study.of_store(os.fspath(store)), Path(store), (cls.open, (Path(store),)))
+        return cls(_core.Study.of_store(os.fspath(store)), Path(store), (cls.open, ()))
 
     @property
     def name(self) -> str:
@@ -359,8 +361,8 @@ def _value(name: str, value: Any) -> str:
     """A value as TOML; `name` is its key."""
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{_key(key)} = {_value(f'{name}.{key}', item)}" for key, _, item in flat(value)) + "}"
-    if isinstance(value, str):
-        return _text(value)
+    if isinstance(value, (str, os.PathLike)):
+        return _text(os.fspath(value))
     if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     # NumPy's arrays of no dimension are single numbers.

@@ -207,3 +207,57 @@ def test_a_section_is_at_one_place() -> None:
             sim.render(view="section", **{name: np.inf})  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="width is 0 or more, not -5"):
         sim.render(width=-5)
+
+
+def test_a_study_keeps_the_tables_that_it_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The store's copy of the file named a table beside the file, so that nobody could read the store."""
+    (tmp_path / "of" / "them").mkdir(parents=True)
+    turns = 2.3999632 * np.arange(560)
+    for name, shift in (("a", 0.0), ("b", 0.01)):
+        rows = (f"{angle:.6f},{place:.6f}\n" for angle, place in zip(turns, shift + np.arange(560) / 28))
+        (tmp_path / "of" / f"{name}.csv").write_text("angle,place\n" + "".join(rows))
+    (tmp_path / "of" / "sizes.csv").write_text("diameter,fraction\n0.9,0.5\n1.1,0.5\n")
+    (tmp_path / "of" / "them" / "tube.toml").write_text(
+        "preset = 'frictionless'\nrun.periods = 0.1\n[tube]\nwaves = 2\narrangement = 'file'\nfile = '../a.csv'\n"
+    )
+    (tmp_path / "of" / "study.toml").write_text(
+        "name = 'tables'\nfile = 'them/tube.toml'\n[base.grains]\nsizes = 'table'\nfile = 'sizes.csv' # of them\n"
+        "[[axes]]\nkey = 'tube.file'\nvalues = ['a.csv', 'b.csv']\n"
+    )
+    monkeypatch.chdir(tmp_path / "of")
+    study = peristalsis.study("study.toml", store=tmp_path / "store")
+    plan = study.plan()
+    assert study.run(workers=1) == "complete"
+    for name in ("a", "b", "sizes"):
+        (tmp_path / "of" / f"{name}.csv").unlink()
+    monkeypatch.chdir(tmp_path)
+    again = peristalsis.Study.open("store")
+    assert [run.identity for run in again.plan()] == [run.identity for run in plan]
+    assert again.run(workers=1) == "complete" and again.counts() == {"done": 2}
+    assert len(again.rows()) == 2 and again.export("tables")
+    assert len(list((tmp_path / "store" / "tables").iterdir())) == 3
+    assert "# of them" in (tmp_path / "store" / "study.toml").read_text()
+
+
+def test_what_is_unpickled_elsewhere_has_the_same_store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "sizes.csv").write_text("diameter,fraction\n0.9,0.5\n1.1,0.5\n")
+    monkeypatch.chdir(tmp_path)
+    base = {"run.periods": 0.1, "tube.waves": 2, "grains.sizes": "table", "grains.file": Path("sizes.csv")}
+    study = peristalsis.study({"name": "elsewhere", "preset": "frictionless-fine", "base": base})
+    study.run(workers=1)
+    pickles = [pickle.dumps(it) for it in (study, peristalsis.Study.open("stores/elsewhere"))]
+    (tmp_path / "else").mkdir()
+    monkeypatch.chdir(tmp_path / "else")
+    for it in pickles:
+        again = pickle.loads(it)
+        assert again.store == tmp_path / "stores" / "elsewhere" and again.counts() == {"done": 1}
+    assert study.store == Path("stores", "elsewhere")
+
+
+def test_complex_scalars_are_no_numbers() -> None:
+    sim = Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05)
+    for value in (np.complex128(2.5 + 1j), np.complex64(2.5)):
+        with pytest.raises(TypeError, match="is no number"):
+            Configuration("frictionless", width=value)  # type: ignore[arg-type]
+        with pytest.raises(TypeError, match="width is a number"):
+            sim.width = value  # type: ignore[assignment]
