@@ -1,5 +1,7 @@
 //! Errors of the estimators.
 
+use crate::uncertain::Uncertain;
+
 /// Error of an estimator: its input cannot be judged.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
@@ -57,7 +59,7 @@ pub enum Error {
         /// The value.
         value: f64,
     },
-    /// A time below 0.
+    /// A time or the error of a known number below 0.
     #[error("value {index} is {value}, but must not be negative")]
     Negative {
         /// Position in the column, from 0.
@@ -233,6 +235,17 @@ pub(crate) fn checked_positive(column: &[f64]) -> Result<&[f64], Error> {
         Some((index, value)) => Err(Error::NotPositive { index, value }),
         None => Ok(column),
     }
+}
+
+/// Refuses a known number that is not finite, or whose error is below 0.
+pub(crate) fn check_known(known: Uncertain) -> Result<(), Error> {
+    let Uncertain { value, error, .. } = known;
+    checked(&[value, error], 2)?;
+    let negative = Error::Negative {
+        index: 1,
+        value: error,
+    };
+    ensure(error >= 0.0, negative)
 }
 
 /// Refuses points (x, y, error) that are not of equal number, finite, and with positive errors.

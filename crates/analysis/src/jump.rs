@@ -1,7 +1,7 @@
 //! Height of the jump of the flow rate at the critical width.
 
 use crate::columns::distinct;
-use crate::error::{Error, check_points, checked, enough};
+use crate::error::{Error, check_known, check_points, enough};
 use crate::line::fit_line;
 use crate::uncertain::Uncertain;
 use schemars::JsonSchema;
@@ -32,7 +32,7 @@ pub struct Jump {
 ///
 /// # Errors
 /// [`Error::TooFew`] for a branch without points, [`Error::LengthMismatch`], [`Error::NonFinite`],
-/// [`Error::NotPositive`].
+/// [`Error::NotPositive`], [`Error::Negative`] for the error of w_c.
 ///
 /// ```
 /// use peristalsis_analysis::{Uncertain, jump_height};
@@ -47,7 +47,7 @@ pub fn jump_height(
     lower: [&[f64]; 3],
     critical: Uncertain,
 ) -> Result<Jump, Error> {
-    checked(&[critical.value, critical.error], 2)?;
+    check_known(critical)?;
     let (upper, upper_slope) = branch(upper, critical.value)?;
     let (lower, lower_slope) = branch(lower, critical.value)?;
     let shift = (upper_slope - lower_slope) * critical.error;
@@ -114,5 +114,7 @@ mod tests {
         let uneven: [&[f64]; 3] = [&[2.7], &[0.9, 0.8], &[0.1]];
         assert_refused!(jump_height(uneven, one, critical) => LengthMismatch { .. });
         assert!(jump_height(one, one, Uncertain::normal(f64::NAN, 0.1)).is_err());
+        let below = Uncertain::normal(2.8, -0.1);
+        assert_refused!(jump_height(one, one, below) => Negative { index: 1, .. });
     }
 }

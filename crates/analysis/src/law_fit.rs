@@ -1,7 +1,7 @@
 //! Critical width and exponent from values with errors at several widths.
 
 use crate::columns::{distinct, mean_of};
-use crate::error::{Error, check_points, checked, checked_positive, enough_places};
+use crate::error::{Error, check_known, check_points, checked_positive, enough_places};
 use crate::law::{CriticalRange, Law};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::linear::{Cholesky, add_information, least_squares};
@@ -136,7 +136,8 @@ impl Points<'_> {
 /// # Errors
 /// [`Error::TooFewPlaces`] with fewer distinct widths than free parameters, [`Error::BeyondCritical`] for a width above
 /// a known w_c without error, [`Error::Undetermined`] where the best w_c lies at infinity (the points follow an
-/// exponential law), [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`].
+/// exponential law), [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`],
+/// [`Error::Negative`] for the error of a known w_c.
 ///
 /// ```
 /// use peristalsis_analysis::{Law, fit_law};
@@ -160,7 +161,7 @@ pub fn fit_law(
         checked_positive(&[power])?;
     }
     if let Some(known) = known {
-        checked(&[known.value, known.error], 2)?;
+        check_known(known)?;
     }
     let fixed = known.filter(|known| known.error <= 0.0);
     let free = fixed.map_or(law.parameters(), |_| 2);

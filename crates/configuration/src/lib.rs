@@ -64,6 +64,7 @@ pub use peristalsis_physics::wall::{
 };
 pub use presets::{PRESETS, Preset, preset};
 pub use reference::reference;
+pub use resolve::{file_keys, file_of};
 pub use schedule::{Schedule, ScheduledParameter};
 pub use schema::{schema, schema_of, unit_of};
 pub use source::{Origin, SourceFile, Sources};

@@ -4,6 +4,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use peristalsis_physics::newtonian::{NewtonianPeristalsis, Trapping, trapping_threshold};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 /// Peristaltic flow of a Newtonian fluid at one amplitude and one pressure rise.
 ///
@@ -313,6 +314,11 @@ impl Newtonian {
     ///     Axial velocity [c], radial velocity [c a/lambda] and stream function [c a^2], each of shape (n,); NaN beyond the
     ///     wall.
     ///
+    /// Raises
+    /// ------
+    /// ValueError
+    ///     For arrays of unequal length.
+    ///
     /// Examples
     /// --------
     /// >>> import numpy as np
@@ -327,6 +333,11 @@ impl Newtonian {
         position: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<[Bound<'py, PyArray1<f64>>; 3]> {
         let (radius, position) = (radius.as_slice()?, position.as_slice()?);
+        if radius.len() != position.len() {
+            let (radii, positions) = (radius.len(), position.len());
+            let reason = format!("{radii} radii, but {positions} positions");
+            return Err(PyValueError::new_err(reason));
+        }
         let each = |value: &dyn Fn(f64, f64) -> f64| {
             let values = radius.iter().zip(position).map(|(&r, &x)| {
                 // Up to rounding the wall itself is within.
@@ -340,6 +351,11 @@ impl Newtonian {
             each(&|r, x| self.flow.radial_velocity(r, x)),
             each(&|r, x| self.flow.stream_function(r, x)),
         ])
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f64, f64)) {
+        let flow = &slf.get().flow;
+        (slf.get_type(), (flow.amplitude_ratio(), flow.pressure()))
     }
 
     fn __repr__(&self) -> String {
@@ -373,6 +389,11 @@ fn along<'py>(
 /// float or None
 ///     phi; `None` where no amplitude traps one.
 ///
+/// Raises
+/// ------
+/// ValueError
+///     For a pressure that is not finite.
+///
 /// Examples
 /// --------
 /// >>> from peristalsis import newtonian
@@ -380,6 +401,10 @@ fn along<'py>(
 /// True
 #[pyfunction(name = "trapping_threshold")]
 #[pyo3(signature = (pressure=0.0))]
-pub(crate) fn trapping_threshold_at(pressure: f64) -> Option<f64> {
-    trapping_threshold(pressure)
+pub(crate) fn trapping_threshold_at(pressure: f64) -> PyResult<Option<f64>> {
+    if !pressure.is_finite() {
+        let reason = format!("the pressure is finite, not {pressure}");
+        return Err(PyValueError::new_err(reason));
+    }
+    Ok(trapping_threshold(pressure))
 }

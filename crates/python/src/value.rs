@@ -40,12 +40,16 @@ fn value_of(value: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
             .map(|(key, value)| Ok((key.extract::<String>()?, value_of(&value)?)));
         return Ok(toml::Value::Table(entries.collect::<PyResult<_>>()?));
     }
-    // NumPy's scalars: truth values say so by their kind.
+    // NumPy's scalars: truth values say so by their kind, and complex numbers, of which only a part would be left.
     if let Ok(kind) = value.getattr("dtype").and_then(|it| it.getattr("kind"))
         && !value.hasattr("__len__")?
-        && kind.eq("b")?
     {
-        return Ok(toml::Value::Boolean(value.is_truthy()?));
+        if kind.eq("b")? {
+            return Ok(toml::Value::Boolean(value.is_truthy()?));
+        }
+        if kind.eq("c")? {
+            return Err(no_value(value));
+        }
     }
     // Whole numbers say so by `__index__`.
     if value.hasattr("__index__")? && !value.hasattr("__len__")? {
@@ -55,10 +59,12 @@ fn value_of(value: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
     if let Ok(number) = value.extract::<f64>() {
         return Ok(toml::Value::Float(number));
     }
-    let values = value.try_iter().map_err(|_| {
-        let reason = format!("{value} is no number, text, truth value, list or dictionary");
-        PyTypeError::new_err(reason)
-    })?;
+    let values = value.try_iter().map_err(|_| no_value(value))?;
     let values: PyResult<Vec<_>> = values.map(|item| value_of(&item?)).collect();
     Ok(toml::Value::Array(values?))
+}
+
+fn no_value(value: &Bound<'_, PyAny>) -> PyErr {
+    let reason = format!("{value} is no number, text, truth value, list or dictionary");
+    PyTypeError::new_err(reason)
 }

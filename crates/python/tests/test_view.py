@@ -116,6 +116,11 @@ def test_what_cannot_be_is_refused_and_the_slider_goes_back(sim: Simulation) -> 
     with pytest.raises(ConfigurationError, match="force_amplitude"):
         view.force_amplitude = 1.0
     assert view.force_amplitude is None
+    for speed in (-1.0, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="speed is"):
+            view.speed = speed
+    assert view.speed == 1.0
+    view.speed = None
 
 
 def test_a_simulation_forgets_a_page_that_is_gone_and_copies_have_none(sim: Simulation) -> None:

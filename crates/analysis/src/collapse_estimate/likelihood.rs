@@ -54,6 +54,7 @@ impl<'a> Likelihood<'a> {
         let corrections = match correction {
             None => None,
             Some(power) => {
+                checked(&[power], 1)?;
                 let parameters = collapse.curves.iter().map(|curve| curve.parameter);
                 let parameters: Vec<f64> = parameters.collect();
                 let logarithms = checked_positive(&parameters)?.iter();

@@ -80,6 +80,11 @@ fn what_does_not_determine_a_law_is_refused() {
         fit_law(Law::Power, &[2.0, 2.1], &[1.0, 2.0], &[0.1; 2], known) =>
         BeyondCritical { width: 2.1, critical: 2.05 }
     );
+    let below = Some(Uncertain::normal(2.2, -0.1));
+    assert_refused!(
+        fit_law(Law::Power, &WIDTHS, &[1.0; 10], &[0.1; 10], below) =>
+        Negative { index: 1, .. }
+    );
     let barrier = Law::Barrier { power: -1.0 };
     assert!(fit_law(barrier, &WIDTHS, &[1.0; 10], &[0.1; 10], None).is_err());
     assert_refused!(

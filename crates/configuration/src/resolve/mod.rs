@@ -10,6 +10,8 @@ mod kernel;
 mod run;
 mod schedules;
 mod spheres;
+
+pub use spheres::{file_keys, file_of};
 mod tube;
 mod units;
 

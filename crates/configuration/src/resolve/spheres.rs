@@ -1,7 +1,7 @@
 //! Numbers that the user gives in a file: places of wall spheres, the shape of a wave, sizes of grains.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::Context;
@@ -93,16 +93,34 @@ fn read_one(file: &FileKey, table: &mut Table, problems: &mut Problems) {
     }
 }
 
-/// The file beside the one that names it, or else seen from where the program runs.
-fn source_of(name: &str, origin: &Origin) -> Result<Arc<Source>, String> {
+/// The keys that name files of numbers.
+pub fn file_keys() -> Vec<String> {
+    let keys = FILES.iter();
+    keys.map(|key| format!("{}.{}", key.table, key.name))
+        .collect()
+}
+
+/// The file that the value of such a key names: beside the one that names it, or else seen from where the program runs.
+pub fn file_of(item: &Item) -> Option<PathBuf> {
+    match &item.node {
+        Node::Text(name) => Some(path_of(name, &item.origin)),
+        _ => None,
+    }
+}
+
+fn path_of(name: &str, origin: &Origin) -> PathBuf {
     let beside = match origin.source.kind {
         SourceKind::File => Path::new(&*origin.source.name).parent(),
         SourceKind::Preset | SourceKind::Override => None,
     };
     let beside = beside.map(|folder| folder.join(name));
     let path = beside.filter(|path| path.is_file());
-    let path = path.as_deref().unwrap_or(Path::new(name));
-    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
+    path.unwrap_or_else(|| name.into())
+}
+
+fn source_of(name: &str, origin: &Origin) -> Result<Arc<Source>, String> {
+    let path = path_of(name, origin);
+    let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
     Ok(Source::new(
         SourceKind::File,
         &*path.to_string_lossy(),

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import operator
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ._arrays import Array
+from ._core import ConfigurationError
 
 
 def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
@@ -27,7 +30,7 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
 def number(name: str, value: Any) -> float:
     """A finite number."""
     try:
-        if isinstance(value, (str, bytes)):
+        if isinstance(value, (str, bytes)) or np.iscomplexobj(value):
             raise TypeError
         found = float(value)
     except (TypeError, ValueError):
@@ -45,8 +48,16 @@ def positive(name: str, value: Any) -> float:
     return found
 
 
+def numeric(value: Any, error: type[ValueError] = ValueError) -> None:
+    """Refuses what NumPy makes numbers of that are not those meant: texts, times, complex numbers, which lose a part, and
+    masked entries, which become what stands below the mask."""
+    if (kind := np.asarray(value).dtype).kind in "cmMSTU":
+        raise TypeError(f"an array of numbers is wanted, not one of {kind}")
+    unmasked(value, error)
+
+
 def unmasked(value: Any, error: type[ValueError] = ValueError) -> None:
-    """Refuses masked entries: an array made of them would have what stands below the mask."""
+    """Refuses masked entries."""
     if isinstance(value, np.ma.MaskedArray) and (places := np.flatnonzero(np.ma.getmaskarray(value))).size:
         raise error(f"value {places[0]} is masked: leave it out, as with .compressed()")
 
@@ -55,6 +66,7 @@ def numbers(name: str, value: Any) -> Array:
     """A new array of numbers."""
     unmasked(value)
     try:
+        numeric(value)
         return np.array(value, dtype=float)
     except (TypeError, ValueError):
         raise TypeError(f"{name} is an array of numbers, not {value!r}") from None
@@ -64,3 +76,19 @@ def of_kind(name: str, value: Any, kind: type, origin: str) -> None:
     """Refuses what is no object of a kind; `origin` says what makes one."""
     if not isinstance(value, kind):
         raise TypeError(f"{name} is {origin}, not {value!r}")
+
+
+def text_of(path: str | os.PathLike[str]) -> str:
+    """The text of a file."""
+    try:
+        return Path(path).read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise ConfigurationError(f"cannot read {os.fspath(path)}: line {line} is not text in UTF-8") from None
+
+
+def alike(one: Any, other: Any) -> bool:
+    """Whether two values are equal; of arrays all entries, NaN where the other has NaN."""
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)
+    return bool(one == other)

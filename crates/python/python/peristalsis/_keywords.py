@@ -6,6 +6,7 @@ import json
 import operator
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
+from types import NoneType
 from typing import Any
 
 import numpy as np
@@ -63,15 +64,19 @@ def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> d
     ConfigurationError
         For a keyword that there is not, or that could mean several keys; for a key that is given twice.
     """
+    if not isinstance(settings, (Mapping, NoneType)):
+        raise TypeError(f"overrides is a mapping of dotted keys, not {settings!r}")
     joined: dict[str, Any] = {}
     names: dict[str, str] = {}
 
     def give(key: str, name: str, value: Any) -> None:
+        if key == "preset":
+            raise ConfigurationError("a preset is not among the overrides\n  help: Configuration and Simulation.preset name it first")
         if key in joined:
             raise ConfigurationError(f"{names[key]} and {name} both are {key}\n  help: give one of them")
         joined[key], names[key] = value, name
 
-    for key, name, value in _flat(settings or {}):
+    for key, name, value in flat(settings or {}):
         give(key, name, value)
     for keyword, value in given.items():
         keys = keywords().get(keyword)
@@ -96,7 +101,7 @@ def _plain(key: str, value: Any) -> Any:
                 f"run.seed = {value!r} is no seed\n"
                 "  help: a whole number from 0 to 2**63 - 1, or a numpy.random.Generator, of which one is drawn"
             )
-    if isinstance(value, int) and not isinstance(value, bool) and not -_MOST <= value <= _MOST:
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool) and not -_MOST <= value <= _MOST:
         raise ConfigurationError(f"{key} = {value} is beyond reach\n  help: whole numbers go up to 2**63 - 1 = {_MOST}")
     return value
 
@@ -114,11 +119,13 @@ def _meant(word: str, known: Iterable[str]) -> str:
     return f"; did you mean {near[0]!r}?" if near else ""
 
 
-def _flat(settings: Mapping[str, Any], path: str = "", name: str = "") -> Iterator[tuple[str, str, Any]]:
+def flat(settings: Mapping[str, Any], path: str = "", name: str = "") -> Iterator[tuple[str, str, Any]]:
     """Dotted keys, how they were given, and their values."""
     for key, value in settings.items():
+        if not isinstance(key, str):
+            raise TypeError(f"a key is text, not {key!r}")
         full, given = (f"{path}.{key}", f"{name}[{key!r}]") if path else (key, key)
         if isinstance(value, Mapping) and full != "drive.schedule":
-            yield from _flat(value, full, given)
+            yield from flat(value, full, given)
         else:
             yield full, given, value

@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from ._arrays import Array
 from ._core import AnalysisError, Table
+from ._given import alike
 from ._progress import Progress, Shown
 from ._warnings import Telling
 
@@ -63,7 +64,7 @@ class Thresholds(NamedTuple):
     back: Threshold | None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Loop:
     """J/Jmax while a parameter of the drive changes there and back; the result of `Simulation.ramp`.
 
@@ -98,6 +99,9 @@ class Loop:
     flow_rate_ratio: Array
     flow_rate_ratio_error: Array
     threshold: float
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Loop) and all(map(alike, vars(self).values(), vars(other).values()))
 
     @property
     def thresholds(self) -> Thresholds:

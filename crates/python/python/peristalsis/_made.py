@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._core import Configuration, ConfigurationError
-from ._given import numbers, of_kind
+from ._given import numbers, of_kind, text_of
 from ._keywords import overrides as joined
 from ._output import Output
 from ._warnings import kind, tell
@@ -166,9 +166,8 @@ class Made(Output):
         >>> sim.length, sim.strain_rate
         (20.0, 0.05)
         """
-        text = Path(path).read_text(encoding="utf-8")
         settings = joined(overrides, keywords)
-        return cls(Configuration(text=text, name=os.fspath(path), overrides=settings))
+        return cls(Configuration(text=text_of(path), name=os.fspath(path), overrides=settings))
 
     @classmethod
     def from_configuration(cls, configuration: Configuration) -> Self:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from . import _core
 from ._drive import Drive, View
+from ._given import number, whole
 from ._picture import Picture
 from ._writers import Writer, held
 
@@ -172,6 +173,11 @@ class Output(Drive):
         Picture
             A notebook shows it.
 
+        Raises
+        ------
+        ValueError
+            For an option that is not possible, and where there is nothing to show.
+
         Examples
         --------
         >>> import peristalsis
@@ -182,8 +188,13 @@ class Output(Drive):
         endings = (".png", ".svg")
         if path is not None and Path(path).suffix.lower() not in endings:
             raise ValueError(f"{path}: a picture is {' or '.join(endings)}")
+        if place is not None and position is not None:
+            raise ValueError("a section is at place or at position, not at both")
+        places = {"place": place, "position": position}
+        places = {name: None if value is None else number(name, value) for name, value in places.items()}
+        width = None if width is None else whole("width", width, 0, 2**32 - 1)
         options: dict[str, Any] = {
-            "view": view, "colour": colour, "range": range, "wall": wall, "place": place, "position": position,
+            "view": view, "colour": colour, "range": range, "wall": wall, **places,
             "waves": waves, "width": width, "paper": paper, "bare": bare,
         }
         picture = Picture(_core.render(self._run, **options, vector=False))

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import operator
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from . import _core
 from ._core import Configuration, Table
-from ._given import positive, whole
+from ._given import positive, text_of, whole
+from ._keywords import flat
 
 
 class PlannedRun(NamedTuple):
@@ -78,7 +82,7 @@ def study(
     if isinstance(source, Mapping):
         name, text = "study", _toml(source)
     else:
-        name, text = os.fspath(source), Path(source).read_text(encoding="utf-8")
+        name, text = os.fspath(source), text_of(source)
     return _of_text(name, text, store)
 
 
@@ -86,7 +90,8 @@ def _of_text(name: str, text: str, store: str | os.PathLike[str] | None) -> Stud
     """The study of a file's name and text."""
     read = _core.Study(name, text)
     folder = Path("stores", read.name) if store is None else Path(store)
-    return Study(read, folder, (_of_text, (name, text, folder)))
+    # Files that it names are beside it, wherever the process runs that unpickles it.
+    return Study(read, folder, (_of_text, (os.path.abspath(name), text)))
 
 
 class Study:
@@ -121,7 +126,8 @@ class Study:
         self.store: Path = store
 
     def __reduce__(self) -> tuple[Callable[..., Study], tuple[Any, ...]]:
-        return self._made
+        function, arguments = self._made
+        return function, (*arguments, self.store.absolute())
 
     @classmethod
     def open(cls, store: str | os.PathLike[str]) -> Study:
@@ -153,7 +159,7 @@ class Study:
         >>> peristalsis.Study.open(f"{folder}/store").counts()
         {'done': 2}
         """
-        return cls(_core.Study.of_store(os.fspath(store)), Path(store), (cls.open, (Path(store),)))
+        return cls(_core.Study.of_store(os.fspath(store)), Path(store), (cls.open, ()))
 
     @property
     def name(self) -> str:
@@ -339,7 +345,7 @@ class Study:
 
 def _toml(content: Mapping[str, Any]) -> str:
     """A study's content as TOML."""
-    return "".join(f"{_key(key)} = {_value(value)}\n" for key, value in content.items())
+    return "".join(f"{_key(key)} = {_value(key, value)}\n" for key, _, value in flat(content))
 
 
 def _key(key: str) -> str:
@@ -351,15 +357,22 @@ def _text(text: str) -> str:
     return '"' + "".join(c if c >= " " and c != "\x7f" else f"\\u{ord(c):04x}" for c in escaped) + '"'
 
 
-def _value(value: Any) -> str:
+def _value(name: str, value: Any) -> str:
+    """A value as TOML; `name` is its key."""
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + "}"
-    if isinstance(value, str):
-        return _text(value)
-    if isinstance(value, bool):
+        return "{" + ", ".join(f"{_key(key)} = {_value(f'{name}.{key}', item)}" for key, _, item in flat(value)) + "}"
+    if isinstance(value, (str, os.PathLike)):
+        return _text(os.fspath(value))
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
-    if isinstance(value, Sequence) or getattr(value, "ndim", None):
-        return "[" + ", ".join(_value(item) for item in value) + "]"
-    if hasattr(value, "__index__"):
-        return str(int(value))
-    return repr(float(value))
+    # NumPy's arrays of no dimension are single numbers.
+    if isinstance(value, Iterable) and getattr(value, "ndim", None) != 0:
+        return "[" + ", ".join(_value(name, item) for item in value) + "]"
+    try:
+        return str(operator.index(value))
+    except TypeError:
+        pass
+    try:
+        return repr(float(value))
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: {value!r} is no number, text, truth value, list or dictionary") from None

@@ -12,6 +12,7 @@ import traitlets
 from . import _core
 from ._core import ConfigurationError, DivergedError
 from ._drive import CHANGEABLE
+from ._given import number
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
@@ -79,6 +80,15 @@ class Widget(anywidget.AnyWidget):
 
     def _driven(self) -> dict[str, float | None]:
         return {name: self._simulation._run.driven(name) for name in CHANGEABLE}
+
+    @traitlets.validate("speed")
+    def _possible(self, proposal: Any) -> float | None:
+        if proposal.value is None:
+            return None
+        speed = number("speed", proposal.value)
+        if speed < 0:
+            raise ValueError(f"speed is 0 or more, not {speed:g}")
+        return speed
 
     @traitlets.observe(*CHANGEABLE)
     def _steer(self, change: Any) -> None:

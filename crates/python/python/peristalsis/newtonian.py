@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._core import Newtonian, trapping_threshold
-from ._given import unmasked
+from ._given import numeric
 
 __all__ = ["Newtonian", "field", "flow_rate_ratio", "trapping_threshold"]
 
@@ -52,7 +52,7 @@ def flow_rate_ratio(
     >>> float(flow_rate_ratio(0.0))
     1.0
     """
-    unmasked(width)
+    numeric(width)
     widths = np.asarray(width, dtype=np.float64)
     ratios = [Newtonian.from_width(w, radius, pressure).flow_rate_ratio for w in widths.flat]
     return np.array(ratios, dtype=np.float64).reshape(widths.shape)
@@ -85,8 +85,8 @@ def field(
     >>> axial.shape
     (2, 2)
     """
-    unmasked(radius)
-    unmasked(position)
+    numeric(radius)
+    numeric(position)
     r, x = np.broadcast_arrays(
         np.asarray(radius, dtype=np.float64), np.asarray(position, dtype=np.float64)
     )

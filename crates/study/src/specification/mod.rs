@@ -4,6 +4,7 @@ mod axis;
 mod keys;
 mod points;
 
+use std::cmp::Reverse;
 use std::ops::Range;
 use std::path::Path;
 use std::{fs, io};
@@ -11,10 +12,12 @@ use std::{fs, io};
 use peristalsis_configuration::document::{self, Item, Node, Table};
 use peristalsis_configuration::{
     Configuration, ConfigurationError, InitialState, Origin, Problem, ProblemKind, Problems,
-    SourceFile, Sources, check_against, join, word,
+    SourceFile, Sources, check_against, file_keys, file_of, join, word,
 };
+use peristalsis_formats::hexadecimal;
 use peristalsis_run::Stopping;
 use serde::Deserialize;
+use sha2::{Digest, Sha256};
 
 use crate::error::{Result, StudyError};
 use crate::identity::{Record, column_names};
@@ -26,6 +29,8 @@ use keys::{Keys, RefineKeys};
 
 /// Most runs of a study before refinement.
 const MOST_RUNS: u64 = 1_000_000;
+/// Digits of a hash that name the copy of a table.
+const HASH_DIGITS: usize = 16;
 /// Problems that are reported at once: one wrong axis is wrong at each of its points.
 const MOST_PROBLEMS: usize = 20;
 
@@ -51,6 +56,24 @@ pub struct Specification {
     text: String,
     /// Where `file` names the base in `text`, quotes included.
     file_span: Option<Range<usize>>,
+}
+
+/// The values of those keys that name tables.
+fn tables_of<'a>(table: &'a Table, keys: &[String]) -> Vec<&'a Item> {
+    let entries = keys.iter().filter_map(|key| document::entry(table, key));
+    entries.map(|entry| &entry.item).collect()
+}
+
+/// A text with names, quotes included, put in places of it.
+fn with_names(text: &str, mut names: Vec<(Range<usize>, String)>) -> String {
+    // From the last on: places before it stay where they are.
+    names.sort_by_key(|(place, _)| Reverse(place.start));
+    names
+        .into_iter()
+        .fold(text.to_owned(), |mut text, (place, name)| {
+            text.replace_range(place, &format!("\"{name}\""));
+            text
+        })
 }
 
 /// The base of every run.
@@ -177,15 +200,39 @@ impl Specification {
         }
     }
 
-    /// The file's text with its base under another name: what a store keeps beside a copy of the base.
-    pub(crate) fn text_with_base(&self, base: &str) -> String {
-        match self.file_span.clone() {
-            Some(Range { start, end }) => {
-                let (before, behind) = (&self.text[..start], &self.text[end..]);
-                format!("{before}\"{base}\"{behind}")
-            }
-            None => self.text.clone(),
-        }
+    /// What a store keeps of the study, by name: the tables that it names, its base, and last its own file, in which those
+    /// have the names of their copies.
+    pub(crate) fn copies(&self, study: &str, base: &str, tables: &str) -> Vec<(String, String)> {
+        let keys = file_keys();
+        let mut kept = Vec::new();
+        let mut renamed = |items: Vec<&Item>| -> Vec<(Range<usize>, String)> {
+            let tables = items.into_iter().filter_map(|item| {
+                let path = file_of(item)?;
+                let text = fs::read_to_string(&path).ok()?;
+                let hash = hexadecimal(&Sha256::digest(&text));
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                let name = name.trim_end_matches(&format!("-{}", &hash[..HASH_DIGITS]));
+                let name = name.replace(|letter: char| !letter.is_ascii_alphanumeric(), "_");
+                let name = format!("{tables}/{name}-{}.csv", &hash[..HASH_DIGITS]);
+                kept.push((name.clone(), text));
+                Some((item.origin.span(), name))
+            });
+            tables.collect()
+        };
+        let in_axes = self.axes.iter().flat_map(|axis| {
+            let columns = axis.keys.iter().enumerate();
+            let columns = columns.filter(|(_, (key, _))| keys.contains(key));
+            columns.flat_map(|(column, _)| axis.rows.iter().map(move |row| &row[column]))
+        });
+        let mut names = renamed([tables_of(&self.base.table, &keys), in_axes.collect()].concat());
+        let base_text = self.base.file.as_ref().map(|(name, text)| {
+            let file = document::parse_file(SourceFile { name, text }, &mut Problems::default());
+            with_names(text, renamed(tables_of(&file, &keys)))
+        });
+        names.extend(self.file_span.clone().map(|span| (span, base.to_owned())));
+        kept.extend(base_text.map(|text| (base.to_owned(), text)));
+        kept.push((study.to_owned(), with_names(&self.text, names)));
+        kept
     }
 
     /// Whether this is what a study file and the file of its base say now.
@@ -196,7 +243,7 @@ impl Specification {
     }
 
     /// The text of the configuration file that it builds on.
-    pub(crate) fn base_text(&self) -> Option<&str> {
+    fn base_text(&self) -> Option<&str> {
         self.base.file.as_ref().map(|(_, text)| text.as_str())
     }
 

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! study.toml               the study file (with base.toml, if it builds on a file)
+//! tables/                  the tables that both name
 //! index.sqlite             what the files say of each run, and who works on it
 //! runs/<identity>/         config.toml, state.checkpoint, state.checkpoint.1, products, done.json
 //! quarantine/<identity>.N/ files that were not what had been written
@@ -47,6 +48,7 @@ pub(crate) use survey::finding;
 /// The file by which a store is known.
 pub const STUDY: &str = "study.toml";
 const BASE: &str = "base.toml";
+const TABLES: &str = "tables";
 const INDEX: &str = "index.sqlite";
 const RUNS: &str = "runs";
 const QUARANTINE: &str = "quarantine";
@@ -94,12 +96,11 @@ impl Store {
         for folder in [path.to_owned(), store.file(RUNS)] {
             fs::create_dir_all(&folder).map_err(StudyError::io("make", folder))?;
         }
-        let mut copies = vec![(STUDY, study.text_with_base(BASE))];
-        if let Some(base) = study.base_text() {
-            copies.insert(0, (BASE, base.to_owned()));
-        }
-        for (name, text) in copies {
-            write_if_other(&store.file(name), &text)?;
+        for (name, text) in study.copies(STUDY, BASE, TABLES) {
+            let file = store.file(&name);
+            let folder = file.parent().unwrap_or(path);
+            fs::create_dir_all(folder).map_err(StudyError::io("make", folder))?;
+            write_if_other(&file, &text)?;
         }
         *store.study() = Some(study.clone());
         Ok(store)
@@ -127,7 +128,7 @@ impl Store {
     /// Whether nothing is in the folder but what a process leaves that is making a store just now, or was killed doing so.
     fn holds_nothing_else(&self) -> bool {
         let is_ours = |name: &str| {
-            [STUDY, BASE, RUNS].contains(&name)
+            [STUDY, BASE, TABLES, RUNS].contains(&name)
                 || name.starts_with(INDEX)
                 || name.ends_with(atomic::PARTIAL_SUFFIX)
         };

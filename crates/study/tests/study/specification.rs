@@ -137,6 +137,41 @@ fn a_configuration_file_can_be_the_base() {
 }
 
 #[test]
+fn a_store_keeps_the_tables_that_a_study_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("sizes \"a\".csv", "diameter,fraction\n0.9,0.5\n1.1,0.5\n");
+    write("b.csv", "diameter,fraction\n0.8,0.5\n1.2,0.5\n");
+    write(
+        "tube.toml",
+        "preset = \"frictionless\"\n[grains]\nsizes = \"table\"\nfile = 'sizes \"a\".csv'\n",
+    );
+    write(
+        "study.toml",
+        "name = \"tables\"\nfile = \"tube.toml\"\n[[axes]]\nkey = \"grains.file\"\nvalues = ['sizes \"a\".csv', \"b.csv\"]\n",
+    );
+    let study = Specification::read(&folder.path().join("study.toml")).unwrap();
+    let path = folder.path().join("store");
+    let create = |study| peristalsis_study::Store::create(&path, study).unwrap();
+    create(&study);
+    for name in ["sizes \"a\".csv", "b.csv"] {
+        std::fs::remove_file(folder.path().join(name)).unwrap();
+    }
+    let text = || std::fs::read_to_string(path.join("study.toml")).unwrap();
+    let (before, store) = (text(), peristalsis_study::Store::open(&path).unwrap());
+    let copy = store.specification().unwrap();
+    let identities = |study: &Specification| -> Vec<_> {
+        let runs = study.plan().runs().iter();
+        runs.map(|run| run.identity).collect()
+    };
+    assert_eq!(identities(&copy), identities(&study));
+    // A copy of a copy is the same.
+    create(&copy);
+    assert_eq!(text(), before);
+    assert_eq!(path.join("tables").read_dir().unwrap().count(), 2);
+}
+
+#[test]
 fn keys_of_the_study_are_checked_like_those_of_a_configuration() {
     refused_with(
         "replicates",

@@ -10,7 +10,8 @@ import numpy as np
 
 from .. import _core
 from .._arrays import Array
-from .._given import of_kind
+from .._core import AnalysisError
+from .._given import alike, number, of_kind, whole
 from ._columns import Numbers, columns, pair, result
 from ._results import CollapseEstimate, CollapseQuality, Interval, JointTest, Uncertain
 
@@ -22,7 +23,7 @@ Places = Sequence["Uncertain | float | tuple[float, float] | None"]
 Scaling = Callable[[list[float], float, float, float, float], tuple[float, float, float]]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CollapseResult:
     """Best parameters of a scaling, with their errors and what to judge them by.
 
@@ -69,6 +70,9 @@ class CollapseResult:
     overlap: float
     leave_one_out: Array
     estimate: CollapseEstimate
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, CollapseResult) and all(map(alike, vars(self).values(), vars(other).values()))
 
 
 class Collapse:
@@ -183,8 +187,8 @@ class Collapse:
         if leave_one_out and len(known):
             raise ValueError("leave_one_out repeats the search without what is known: ask for one of the two")
         search = self._search(start, steps, known) | {
-            "starts": int(starts),
-            "seed": int(seed),
+            "starts": whole("starts", starts, 0),
+            "seed": whole("seed", seed, 0, 2**64 - 1),
             "correction": None if correction is None else float(correction),
             "leave_one_out": bool(leave_one_out),
         }
@@ -255,7 +259,9 @@ class Collapse:
         (True, True, 2)
         """
         of_kind("found", found, CollapseResult, "what Collapse.fit answered")
-        values = [(place, float(value)) for place, value in enumerate(claimed) if value is not None]
+        if len(claimed) != len(found.parameters):
+            raise AnalysisError(f"claimed has {len(claimed)} values of {len(found.parameters)} parameters")
+        values = [(place, number("claimed", value)) for place, value in enumerate(claimed) if value is not None]
         search = self._search(found.parameters, steps, known)
         return result(JointTest, _core.test_collapse(self.curves, self.scaling, search, asdict(found.estimate), values))
 

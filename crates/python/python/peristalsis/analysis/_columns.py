@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from .._arrays import Array, Runs, RunTable
 from .._core import AnalysisError
-from .._given import unmasked
+from .._given import numeric, unmasked, whole
 from ._results import Uncertain
 
 Numbers = npt.ArrayLike
@@ -38,9 +38,9 @@ if TYPE_CHECKING:
 
 
 def reals(values: Numbers) -> Array:
-    """A column of numbers."""
-    unmasked(values, AnalysisError)
-    array = np.ascontiguousarray(values, dtype=np.float64)
+    """A column of numbers, which what the caller does with theirs does not touch."""
+    numeric(values, AnalysisError)
+    array = np.array(values, dtype=np.float64, order="C")
     if array.ndim != 1:
         raise ValueError(f"a column has one dimension, not {array.ndim}")
     return array
@@ -54,20 +54,25 @@ def columns(*given: Numbers) -> list[Array]:
     return arrays
 
 
+def _number(value: Any) -> float:
+    """A value as a number, NaN where it is none."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return np.nan
+
+
 def truths(values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-    """A column of truth values, none of them missing."""
+    """A column of truth values, none of them missing; a copy, as of `reals`."""
     unmasked(values, AnalysisError)
     array = np.asarray(values)
     if array.dtype != bool:
-        try:
-            numbers = array.astype(np.float64)
-        except (TypeError, ValueError):
-            numbers = np.full(array.shape, np.nan)
-        if strange := [(index, value) for index, value in enumerate(array.flat) if numbers.flat[index] not in (0.0, 1.0)]:
-            index, value = strange[0]
-            raise AnalysisError(f"value {index} is {value!r}: true or false (1 or 0) is wanted, and none may be missing")
-        array = numbers == 1.0
-    return np.ascontiguousarray(array)
+        for index, value in enumerate(array.flat):
+            if _number(value) not in (0.0, 1.0):
+                reason = "true or false (1 or 0) is wanted, and none may be missing"
+                raise AnalysisError(f"value {index} is {value!r}: {reason}")
+        array = array.astype(np.float64) == 1.0
+    return np.array(array, order="C")
 
 
 def runs(time: Numbers, observed: npt.ArrayLike | None) -> Runs:
@@ -86,6 +91,11 @@ def run_table(width: Numbers, time: Numbers, observed: npt.ArrayLike | None) -> 
     times, outcomes = runs(time, observed)
     widths, times = columns(width, times)
     return widths, (times, outcomes)
+
+
+def resampling(resamples: int, seed: int) -> tuple[int, int]:
+    """Number of resamples, and the seed of them."""
+    return whole("resamples", resamples, 0), whole("seed", seed, 0, 2**64 - 1)
 
 
 def pair(value: Uncertain | float | tuple[float, float]) -> tuple[float, float]:

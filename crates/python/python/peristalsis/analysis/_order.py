@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy.typing as npt
 
 from .. import _core
-from ._columns import Numbers, columns, pair, reals, result, runs
+from ._columns import Numbers, columns, pair, reals, resampling, result, runs
 from ._results import DipTest, FractionCrossing, Hysteresis, Jump, TwoPeaks, Uncertain
 
 
@@ -168,7 +168,7 @@ def dip_test(values: Numbers, *, resamples: int = 1000, seed: int = 0) -> DipTes
     >>> analysis.dip_test(apart, resamples=200).probability < 0.01
     True
     """
-    return result(DipTest, _core.dip_test(reals(values), int(resamples), int(seed)))
+    return result(DipTest, _core.dip_test(reals(values), *resampling(resamples, seed)))
 
 
 def two_peaks(values: Numbers) -> TwoPeaks:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from .. import _core
-from ._columns import Numbers, columns, reals, result
+from .._given import whole
+from ._columns import Numbers, columns, reals, resampling, result
 from ._results import AutocorrelationTime, Estimate, MomentPeak, Moments, SecondMoment, Stationarity, StationaryMean
 
 
@@ -200,7 +201,7 @@ def second_moment(runs: Iterable[Numbers], *, held: int | None = None) -> list[S
     >>> moment.mean, moment.variance, moment.runs
     (0.5, 0.25, 3)
     """
-    answers = _core.second_moment([reals(run) for run in runs], held)
+    answers = _core.second_moment([reals(run) for run in runs], _held(held))
     return [result(SecondMoment, answer) for answer in answers]
 
 
@@ -239,4 +240,9 @@ def second_moment_peak(
     (1.0, 0.182)
     """
     rows = [reals(run) for run in runs]
-    return result(MomentPeak, _core.second_moment_peak(rows, held, int(resamples), int(seed)))
+    return result(MomentPeak, _core.second_moment_peak(rows, _held(held), *resampling(resamples, seed)))
+
+
+def _held(samples: int | None) -> int | None:
+    """Last samples at whose mean a run stays that ended."""
+    return None if samples is None else whole("held", samples, 1)

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .. import _core
 from .._arrays import Array
 from .._core import AnalysisError
-from .._given import unmasked
+from .._given import numeric
 from ._columns import Numbers, reals, result, runs
 from ._results import LifetimeFit, RestrictedMoments, ShiftedExponentialFit, SurvivalStep, Uncertain
 
@@ -99,7 +99,7 @@ class Survival:
         Returns
         -------
         ndarray
-            S, of the shape of `time`.
+            S, of the shape of `time`; NaN where that is NaN.
 
         Examples
         --------
@@ -107,10 +107,11 @@ class Survival:
         >>> analysis.Survival([1.0, 2.0]).at([0.0, 1.5]).tolist()
         [1.0, 0.5]
         """
-        unmasked(time, AnalysisError)
+        numeric(time, AnalysisError)
+        asked = np.asarray(time, dtype=np.float64)
         times = np.array([step.time for step in self.steps])
         levels = np.array([1.0, *(step.survival.value for step in self.steps)])
-        return levels[np.searchsorted(times, np.asarray(time, dtype=np.float64), side="right")]
+        return np.where(np.isnan(asked), np.nan, levels[np.searchsorted(times, asked, side="right")])
 
     @property
     def median(self) -> Uncertain:
