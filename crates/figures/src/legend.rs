@@ -64,7 +64,7 @@ const MARK_WIDTH: f64 = 7.0;
 const SAMPLE_GAP: f64 = 4.0;
 const COLUMN_GAP: f64 = 10.0;
 const ROW_HEIGHT: f64 = 9.2;
-const MOST_COLUMNS: usize = 6;
+const MOST_COLUMNS: usize = 8;
 
 impl Legend {
     /// Sets the entries in the room across that there is, in as few rows as possible.

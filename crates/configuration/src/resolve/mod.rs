@@ -10,12 +10,11 @@ mod kernel;
 mod run;
 mod schedules;
 mod spheres;
-
-pub use spheres::{file_keys, file_of};
 mod tube;
 mod units;
 
 use peristalsis_physics::method::InitialState;
+pub use spheres::{file_keys, file_of};
 
 use crate::configuration::{Configuration, Control, FIRST_SEED, Wall};
 use crate::contract;
