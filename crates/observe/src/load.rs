@@ -62,7 +62,7 @@ impl GrainContact {
     }
 }
 
-/// Calls `visit` for the contacts of the grains as they stand, grain by grain; those of the wall with itself are left out.
+/// Calls `visit` for each of the [`grain_contacts`], which are not collected.
 pub(crate) fn for_each_grain_contact(simulation: &Simulation, mut visit: impl FnMut(GrainContact)) {
     let bodies = simulation.bodies();
     let wall_diameter = simulation.wall().sphere_diameter();
@@ -73,7 +73,7 @@ pub(crate) fn for_each_grain_contact(simulation: &Simulation, mut visit: impl Fn
     });
 }
 
-/// The contacts of the grains: see [`for_each_grain_contact`].
+/// The contacts of the grains as they stand, grain by grain; those of the wall with itself are left out.
 pub fn grain_contacts(simulation: &Simulation) -> Vec<GrainContact> {
     let mut contacts = Vec::new();
     for_each_grain_contact(simulation, |contact| contacts.push(contact));
