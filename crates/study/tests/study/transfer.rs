@@ -1,6 +1,7 @@
 //! Finished runs from one store to another: by tables of rows, and by archives of all their files.
 
 use std::fs;
+use std::path::PathBuf;
 
 use peristalsis_study::{Store, StudyError};
 
@@ -141,16 +142,22 @@ fn a_study_goes_on_from_the_rows_that_it_is_given() {
     assert_eq!((found.whole, found.imported), (2, 4));
 }
 
-/// A pump engineer: a table whose numbers had been changed was said to be taken, and `study scan` put some of them into the
-/// store.
-#[test]
-fn rows_of_finished_runs_are_not_taken_even_when_the_index_is_made_anew() {
+/// A study that is complete, its table, and a second place whose store took all of its rows.
+fn imported() -> (Place, PathBuf, Place) {
     let first = Place::new(SMALL);
     first.complete();
     first.tables();
     let second = Place::new(SMALL);
     let table = first.path("tables/small.csv");
     second.store().import_table(&table).unwrap();
+    (first, table, second)
+}
+
+/// A pump engineer: a table whose numbers had been changed was said to be taken, and `study scan` put some of them into the
+/// store.
+#[test]
+fn rows_of_finished_runs_are_not_taken_even_when_the_index_is_made_anew() {
+    let (_first, table, second) = imported();
     let text = fs::read_to_string(&table).unwrap();
     let (head, last) = text.trim_end().rsplit_once('\n').unwrap();
     let names = text.lines().find(|line| line.contains("identity")).unwrap();
@@ -172,12 +179,7 @@ fn rows_of_finished_runs_are_not_taken_even_when_the_index_is_made_anew() {
 
 #[test]
 fn an_imported_copy_that_was_damaged_is_not_believed() {
-    let first = Place::new(SMALL);
-    first.complete();
-    first.tables();
-    let second = Place::new(SMALL);
-    let table = first.path("tables/small.csv");
-    second.store().import_table(&table).unwrap();
+    let (first, _, second) = imported();
     let copy = entries(&second.path("store/imported")).remove(0);
     flip(&copy, 0.9);
     assert_eq!(second.store().scan().unwrap().imported, 0);
