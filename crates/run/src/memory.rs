@@ -9,7 +9,7 @@ use crate::RunError;
 const BYTES_OF_PROGRAM: f64 = 4e7;
 /// Bytes of a frictionless grain in a prescribed tube, at most: some 450 are measured (BENCHMARKS.md).
 const BYTES_OF_GRAIN: f64 = 800.0;
-/// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered, at most: 1,200 to 2,000 are measured.
+/// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered, at most: 1,200 to 2,100 are measured.
 const BYTES_WITH_CONTACTS: f64 = 3000.0;
 
 /// Grains, and spheres of an elastic wall.
