@@ -24,7 +24,7 @@ use crate::commands::study::{StudyCommand, WorkArguments, time_span};
     version = concat!(env!("CARGO_PKG_VERSION")),
     propagate_version = true,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 3 a run computed again differs from its published row; 129, 130, 138, 143 stopped by a signal, with everything saved (a second signal, a second later, ends at once); a signal ends view with 0."
+    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says how to go on); 1 failed or diverged; 2 bad input; 3 a run computed again differs from its published row; 129, 130, 138, 143 stopped by a signal, with everything saved (a second signal, a second later, ends at once); a signal ends view with 0."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -216,7 +216,7 @@ pub(crate) struct ViewArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct RunsArguments {
-    /// Folders of runs, or folders below which they are.
+    /// Folders of runs, or folders that contain them.
     #[arg(value_name = "DIR", default_value = "runs")]
     pub(crate) folders: Vec<PathBuf>,
     /// Print as JSON.

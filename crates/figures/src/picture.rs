@@ -123,7 +123,11 @@ impl PictureFigure<'_> {
         let (bar_left, bar_width) = self.place_of_bars(area.width);
         let free_from = self.end_of_scale(area.width);
         let drop = |colours: &ColourScale| colours.drop(bar_width, bar_left - free_from);
-        let drops: Vec<f64> = self.colours.iter().copied().map(drop).collect();
+        // The lines of a label reach as far below its bar as above it, where the next bar follows.
+        let mut drops: Vec<f64> = self.colours.iter().copied().map(drop).collect();
+        for upper in (1..drops.len()).rev() {
+            drops[upper] += drops[upper - 1];
+        }
         let height = area.bottom() + whole(self.space_below() + drops.iter().sum::<f64>());
         let mut drawing = Drawing::new(area.width, height, self.title);
         (drawing.paper, drawing.pixels_per_point) = (page, scale);

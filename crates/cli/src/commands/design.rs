@@ -124,7 +124,7 @@ fn in_words(design: &Design) -> String {
     }
     if design.groups.iter().any(|group| group.place() == "near") {
         lines.push(
-            "near: outside the range, but by less than two tubes that count as alike differ; counted as inside"
+            "near: just outside the range, by less than two tubes that count as alike may differ; counted as inside"
                 .to_owned(),
         );
     }

@@ -47,7 +47,11 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
         )
     });
     let efficiency = fluid.efficiency();
-    let efficiency = efficiency.map_or("does not pump".to_owned(), |value| format!("{value:.4}"));
+    let efficiency = match efficiency {
+        Some(value) => format!("{value:.4}"),
+        None if fluid.pressure() == 0.0 => "none: no pressure to pump against".to_owned(),
+        None => "none: does not pump".to_owned(),
+    };
     let stopping = match fluid.zero_flow_pressure() {
         pressure if pressure.is_finite() => format!("flow stops at {pressure:.5}"),
         _ => "no pressure stops the flow".to_owned(),

@@ -22,7 +22,7 @@ pub(crate) fn runs(arguments: &RunsArguments) -> Result<ExitCode, Failure> {
                 let reason = format!("cannot read {}: {error}", folder.display());
                 Failure::usage(
                     reason,
-                    "name folders of runs, or folders below which they are",
+                    "name folders of runs, or folders that contain them",
                 )
             })?,
         }

@@ -92,6 +92,10 @@ pub enum LegendPlace {
     Hidden,
 }
 
+/// What stands between the parts of a title: a line may end there.
+pub const TITLE_SEPARATOR: &str = ",  ";
+/// Baseline of the first line of a title.
+const TITLE_BASELINE: f64 = 9.0;
 /// Most values that the legend tells one by one.
 const MOST_VALUES: usize = 12;
 /// Space above a frame for its letter and title.
@@ -115,7 +119,8 @@ impl ChartFigure {
         }
     }
 
-    /// A line above the figure, in markup.
+    /// Words above the figure, in markup: a line, or several where they are longer than the page is wide and have a
+    /// [`TITLE_SEPARATOR`].
     pub fn title(mut self, title: &str) -> Self {
         title.clone_into(&mut self.title);
         self
@@ -190,15 +195,15 @@ impl ChartFigure {
         if let Some(scale) = &self.colour_scale {
             scale.check()?;
         }
-        let has_title = !self.title.is_empty();
-        let layout = Layout::of(self, if has_title { TITLE_SPACE } else { 0.0 })?;
         let width = self.width.points();
+        let title = title_lines(&self.title, width - 2.0 * RIGHT_MARGIN);
+        let layout = Layout::of(self, TITLE_SPACE * title.len() as f64)?;
         // The height of the page is known when the legends have their places.
         let mut drawing = Drawing::new(width, layout.bottom, &self.summary());
-        if has_title {
-            let text = Text::fitted(&self.title, TITLE_SIZE, width - 2.0 * RIGHT_MARGIN);
+        for (line, text) in title.into_iter().enumerate() {
+            let baseline = TITLE_BASELINE + TITLE_SPACE * line as f64;
             let layer = drawing.layer("title", None);
-            layer.text((width / 2.0, 9.0), Anchor::Middle, text, BLACK);
+            layer.text((width / 2.0, baseline), Anchor::Middle, text, BLACK);
         }
         let scale = self.shown_scale();
         let of_panels = self.draw_panels(&mut drawing, &layout, scale.as_ref());
@@ -343,6 +348,22 @@ impl ChartFigure {
         let layer = drawing.layer("headers", None);
         layer.text((area.left, area.top - 3.0), Anchor::Start, text, BLACK);
     }
+}
+
+/// A title in as few lines as have room, each of whole parts; one part that has none is set smaller.
+fn title_lines(title: &str, room: f64) -> Vec<Text> {
+    let mut lines: Vec<String> = Vec::new();
+    for part in title.split(TITLE_SEPARATOR).filter(|part| !part.is_empty()) {
+        let longer = lines.last().map(|line| [line, part].join(TITLE_SEPARATOR));
+        match longer.filter(|longer| Text::new(longer, TITLE_SIZE).width <= room) {
+            Some(longer) => *lines.last_mut().expect("a line") = longer,
+            None => lines.push(part.to_owned()),
+        }
+    }
+    let lines = lines.iter();
+    lines
+        .map(|line| Text::fitted(line, TITLE_SIZE, room))
+        .collect()
 }
 
 /// Letters of panels: a to z, then aa, ab, ...

@@ -383,3 +383,7 @@ class Made(Output):
 
     def __reduce__(self) -> tuple[Callable[[bytes, str | None], Self], tuple[bytes, str | None]]:
         return self._unpickled, (self.to_bytes(), self._run.divergence)
+
+
+# Python's own messages about arguments name the class that users know.
+Made.__init__.__qualname__ = "Simulation.__init__"

@@ -223,7 +223,8 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
     if column not in table:
         raise ValueError(f"the profile has no column {column!r}; it has {', '.join(table.column_names)}")
     if not np.isfinite(table[column]).any():
-        raise ValueError(f"there is no {column} to draw: run the simulation first, for a period at least")
+        long = "some periods in its late part" if column.endswith("_error") else "a period at least"
+        raise ValueError(f"there is no {column} to draw yet: run the simulation longer, for {long}")
     unit = table.units[column]
     words, symbol, colour = _COLUMNS.get(column, (column.replace("_", " "), "", BLUE))
     speed = simulation.strain_rate * simulation.configuration["tube.wavelength"]

@@ -70,7 +70,7 @@ const CLAIMS: [Claim; 6] = [
     ),
     claim!(
         "F7",
-        "The critical bottleneck shrinks with the strain rate",
+        "The critical width shrinks with the strain rate",
         "*w*_c falls linearly with *ε\u{307}*: *w*_c = −3.75 *ε\u{307}* + *w*_{max}.",
         &["divergence-fine", "divergence-coarse"]
     ),
@@ -158,7 +158,7 @@ fn divergence() -> Result<Finding, FigureError> {
     let normal = |value, error| Some(Uncertain::normal(value, error));
     let skew = between(1.03, 0.12, [0.97, 1.21], [0.92, 1.47]);
     let open = between(2.882, 0.009, [2.876, f64::INFINITY], [2.862, f64::INFINITY]);
-    let mut critical = quantity("critical bottleneck", "*w*_c", None, open);
+    let mut critical = quantity("critical width", "*w*_c", None, open);
     critical.unit = "*d*".to_owned();
     Ok(Finding {
         quantities: vec![
@@ -255,7 +255,7 @@ pub(crate) fn specimen() -> Result<Report, FigureError> {
     let disk = "stores/divergence-coarse/index.sqlite: disk I/O error";
     let outcome = |file: StudyFile, done, failed, failure: Option<&str>| StudyOutcome {
         file,
-        title: "Transition times near the critical bottleneck".to_owned(),
+        title: "Transition times near the critical width".to_owned(),
         runs: 72,
         done,
         failed,

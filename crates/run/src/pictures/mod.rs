@@ -5,10 +5,13 @@ mod profile;
 mod snapshot;
 
 use peristalsis_analysis::number::{decimal, plain, rounded, with_error};
-use peristalsis_configuration::{Configuration, Control, ScheduledParameter, WaveformName, word};
+use peristalsis_configuration::{
+    Arrangement, Configuration, Control, InitialState, ScheduledParameter, WaveDirection,
+    WaveformName, word,
+};
 use peristalsis_figures::chart::{
     Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
-    Reference, Tint,
+    Reference, TITLE_SEPARATOR, Tint,
 };
 use peristalsis_figures::{
     ColourScale, Drawing, FigureError, Palette, Quantity, Scale, Units, Width,
@@ -29,6 +32,8 @@ pub use self::snapshot::snapshot_stack;
 const MARKED_PERIODS: usize = 60;
 /// Periods from which the axis of time ends at a whole one, though the last sample may fall a little short.
 const MANY_PERIODS: f64 = 5.0;
+/// How far beyond a whole period, by rounding, the last sample may fall.
+const WHOLE: f64 = 1e-6;
 /// Heights of panels in millimetres: against one quantity, of two below each other, and of space and time.
 const HEIGHT: f64 = 42.0;
 const LOW_HEIGHT: f64 = 30.0;
@@ -74,25 +79,24 @@ pub(crate) fn draw_all(
     Ok(drawings)
 }
 
-/// The parameters of a run in one line of markup.
+/// The parameters of a run, in markup.
 fn title(configuration: &Configuration) -> String {
     let value = |parameter, constant| scheduled_value(configuration, parameter, constant);
     let (control, density) = match configuration.drive.control {
         Control::Strain { width } => {
             let width = value(ScheduledParameter::Width, width);
-            let density = format!("*ρ* = {:.3},  ", configuration.volume_fraction());
             // Not all grains are in an open tube.
             let is_known = configuration.tube.ends.is_periodic();
-            let density = if is_known { density } else { String::new() };
+            let density = is_known.then(|| format!("*ρ* = {:.3}", configuration.volume_fraction()));
             (format!("*w* = {width} *d*"), density)
         }
         Control::Stress {
             force_amplitude, ..
         } => {
             let force = value(ScheduledParameter::ForceAmplitude, force_amplitude);
-            let density = format!("*n* = {:.3} *d*^{{−3}},  ", configuration.number_density());
+            let density = format!("*n* = {:.3} *d*^{{−3}}", configuration.number_density());
             let unit = units(configuration).force();
-            (format!("*f*^{{P}} = {force} {unit}"), density)
+            (format!("*f*^{{P}} = {force} {unit}"), Some(density))
         }
     };
     let rate = value(
@@ -100,32 +104,68 @@ fn title(configuration: &Configuration) -> String {
         configuration.drive.strain_rate,
     );
     let waits = configuration.inlet.is_some_and(|inlet| inlet.waiting > 0);
-    let number = || match (configuration.grains.number, waits) {
-        (number, false) => format!("*N* = {number}"),
-        (number, true) => format!("*N* = {number} with those that wait"),
-    };
-    let rest = particular(configuration).unwrap_or_else(number);
-    format!(
-        "{control},  *ε\u{307}* = {rate} {},  {density}{rest}",
-        units(configuration).rate()
-    )
+    let wait = if waits { " with those that wait" } else { "" };
+    let rate = format!("*ε\u{307}* = {rate} {}", units(configuration).rate());
+    let number = format!("*N* = {}{wait}", configuration.grains.number);
+    let usual = [Some(control), Some(rate), density, Some(number)];
+    let all: Vec<String> = usual
+        .into_iter()
+        .flatten()
+        .chain(particular(configuration))
+        .collect();
+    all.join(TITLE_SEPARATOR)
 }
 
-/// Unusual settings of a run: its waveform, its body force.
-fn particular(configuration: &Configuration) -> Option<String> {
-    let waveform = configuration.drive.waveform;
-    let waveform = (waveform != WaveformName::Sine).then(|| word(waveform));
-    let [x, y, z] = configuration.body.gravity;
+/// Settings of a run that few have: those that differ from the words and numbers below, and its body force.
+fn particular(configuration: &Configuration) -> impl Iterator<Item = String> {
+    let drive = &configuration.drive;
+    let usual_friction = match drive.control {
+        Control::Strain { .. } => 0.0,
+        Control::Stress { .. } => 0.5,
+    };
+    let choices = [
+        ("wave", word(drive.waveform), word(WaveformName::Sine)),
+        (
+            "direction",
+            word(drive.direction),
+            word(WaveDirection::Forward),
+        ),
+        (
+            "start",
+            word(configuration.initial.state),
+            word(InitialState::Rest),
+        ),
+        (
+            "wall",
+            word(configuration.tube.arrangement),
+            word(Arrangement::Staggered),
+        ),
+    ];
+    let choices = choices
+        .into_iter()
+        .filter(|(_, chosen, usual)| chosen != usual);
+    let choices = choices.map(|(name, chosen, _)| format!("{name}: {chosen}"));
+    let friction = configuration.contact.friction;
+    let friction = friction.map_or(0.0, |law| law.static_friction);
+    let friction = (friction != usual_friction).then(|| format!("*μ*_{{s}} = {}", short(friction)));
+    choices.chain(friction).chain(body_force(configuration))
+}
+
+/// Force over mass on the grains: along the wave if it has no other part, else the vector whose z component it is.
+fn body_force(configuration: &Configuration) -> Option<String> {
+    let [x, y, _] = configuration.body.gravity;
+    let along = configuration.axial_body_force();
     let force = match (x, y) {
-        (0.0, 0.0) => short(configuration.axial_body_force()),
-        _ => format!("({}, {}, {})", short(x), short(y), short(z)),
+        (0.0, 0.0) => short(along),
+        _ => {
+            let z = configuration.heading() * along;
+            format!("({}, {}, {})", short(x), short(y), short(z))
+        }
     };
     let unit = units(configuration).acceleration();
-    let force = configuration
+    configuration
         .has_body_force()
-        .then(|| format!("*g* = {} {unit}", force.replace('-', "−")));
-    let words: Vec<String> = waveform.into_iter().chain(force).collect();
-    (!words.is_empty()).then(|| words.join(",  "))
+        .then(|| format!("*g* = {} {unit}", force.replace('-', "−")))
 }
 
 /// A drive parameter as a title shows it: its value, or the extent of its schedule.
@@ -174,9 +214,10 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     let averages = recorder.averages();
     let intervals = recorder.samples_of_average();
     let periods = middles(averages.len(), intervals);
-    let mut last = end(samples.len());
+    let measured = end(samples.len());
+    let mut last = measured;
     if last >= MANY_PERIODS {
-        last = last.ceil();
+        last = (last - WHOLE).ceil();
     }
     let samples_line = Line::new("samples", &time, &ratio).tint(Tint::Sky);
     let mut panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::FlowRateRatio))
@@ -200,7 +241,7 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     let threshold = configuration.observe.transition_threshold;
     let level = Line::new("threshold", &[0.0, last], &[threshold; 2]).tint(Tint::Black);
     panel = panel.with(level.pattern(Pattern::Dotted).weight(0.7));
-    let late_mean = late_mean(summary.flow_rate_ratio, run.late_fraction(), last);
+    let late_mean = late_mean(summary.flow_rate_ratio, run.late_fraction(), measured);
     panel = panel.with_all(late_mean.into_iter().flatten());
     panel = panel.with_all(newtonian_fluid(summary, last));
     if let Some(time) = summary.transition_time {
@@ -253,7 +294,7 @@ fn guide(value: f64) -> Reference {
     line.tint(Tint::Grey).pattern(Pattern::Solid)
 }
 
-/// The mean over the last part of a run up to a last period, and the band of its error; nothing where either is unknown.
+/// The mean over the last part of a run of so many periods, and the band of its error; nothing where either is unknown.
 fn late_mean((mean, error): (f64, f64), part: f64, last: f64) -> Option<[ChartLayer; 2]> {
     if !(mean.is_finite() && error.is_finite()) {
         return None;

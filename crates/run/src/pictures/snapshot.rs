@@ -1,6 +1,7 @@
 //! Runs from the side.
 
 use peristalsis_analysis::number::rounded;
+use peristalsis_figures::chart::TITLE_SEPARATOR;
 use peristalsis_figures::{
     Drawing, FigureError, Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall,
     Width,
@@ -29,7 +30,7 @@ pub(super) fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
     let configuration = run.configuration();
     let period = configuration.drive.period();
     let instant = instant(run.simulation().time(), period, units(configuration));
-    let title = format!("{},  {instant}", title(configuration));
+    let title = [title(configuration), instant].join(TITLE_SEPARATOR);
     draw(&title, &[("", run)])
 }
 

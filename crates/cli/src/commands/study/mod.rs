@@ -169,7 +169,7 @@ pub(crate) struct StatusArguments {
 pub(crate) struct WhyArguments {
     #[command(flatten)]
     store: StoreArguments,
-    /// Identity of the run, or its beginning.
+    /// Identity of the run (column `identity` of `study export`), or its beginning.
     #[arg(value_name = "RUN")]
     run: String,
 }
