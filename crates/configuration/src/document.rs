@@ -224,6 +224,16 @@ pub(crate) fn remove(table: &mut Table, path: &str) -> Option<Entry> {
     }
 }
 
+/// The table at a dotted path, if it is one.
+pub(crate) fn table_mut<'a>(table: &'a mut Table, path: &str) -> Option<&'a mut Table> {
+    path.split('.').try_fold(table, |table, key| {
+        match &mut table.get_mut(key)?.item.node {
+            Node::Table(inner) => Some(inner),
+            _ => None,
+        }
+    })
+}
+
 /// The text at a dotted path, if it is one.
 pub(crate) fn text<'a>(table: &'a Table, path: &str) -> Option<&'a str> {
     match &entry(table, path)?.item.node {

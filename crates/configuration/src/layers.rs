@@ -8,7 +8,7 @@ use peristalsis_physics::ends::Ends;
 use peristalsis_physics::sizes::SizeForm;
 use peristalsis_physics::wall::{Arrangement, ElasticNetwork, SegmentDrive};
 
-use crate::document::{self, Entry, Table};
+use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
 use crate::keys::{DAMPINGS, OPEN, RINGS, exclusive_groups};
 use crate::materials::{self, MATERIAL};
@@ -173,6 +173,21 @@ pub(crate) fn has_meaning(table: &Table, key: &str) -> bool {
     !SWITCHES.iter().any(lacks_it)
 }
 
+const SCHEDULE: &str = "drive.schedule";
+
+/// Where `layer` gives keys of a schedule without its form, they change the schedule of `base`: its other keys are added.
+pub(crate) fn complete_schedule(base: &Table, layer: &mut Table) {
+    let below = document::entry(base, SCHEDULE).map(|entry| &entry.item.node);
+    if let Some(Node::Table(below)) = below
+        && let Some(above) = document::table_mut(layer, SCHEDULE)
+        && !above.contains_key("form")
+    {
+        for (key, entry) in below {
+            above.entry(key.clone()).or_insert_with(|| entry.clone());
+        }
+    }
+}
+
 /// Lays `layer` over `base`.
 pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) {
     for group in exclusive_groups() {
@@ -203,8 +218,8 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
         drop_meaningless(base, &layer, switch);
     }
     // A schedule is one thing: half of an old one under half of a new one has no meaning.
-    if document::entry(&layer, "drive.schedule").is_some() {
-        document::remove(base, "drive.schedule");
+    if document::entry(&layer, SCHEDULE).is_some() {
+        document::remove(base, SCHEDULE);
     }
     document::merge(base, layer);
 }

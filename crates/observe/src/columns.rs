@@ -125,7 +125,7 @@ pub const COLUMNS: &[Column] = &[
 pub const PROFILE: &[Quantity<ProfileBin>] = &[
     Quantity::new("position", "1", "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave", Real(|b| b.position)),
     Quantity::new("density", "1/d", "grains per length of tube", Measured(|b| b.density)),
-    Quantity::new("axial_velocity", "d/t", "mean axial velocity along the wave, laboratory frame", Measured(|b| b.axial_velocity)),
+    Quantity::new("axial_velocity", "d/t", "mean axial velocity along the wave, laboratory frame: momentum over mass, so that grains of several sizes count by their mass", Measured(|b| b.axial_velocity)),
     Quantity::new("granular_temperature", "m d^2/t^2", "sum m |v - <v>|^2/(3 N) in the bin, <v> the velocity of its centre of mass", Measured(|b| b.temperature)),
     Quantity::new("radius", "d", "mean radius of the tube", Real(|b| b.radius)),
     Quantity::new("least_radius", "d", "least radius seen", Real(|b| b.least_radius)),

@@ -11,7 +11,8 @@ use crate::view::View;
 /// Observables of one interval of time, in units of d, m, t; flow is positive along the wave.
 ///
 /// Rates (flow, powers) are means over the interval; the others are values at its end. Flow, displacements, momentum and the
-/// power of the body force are those of the grains inside the tube at the end of the interval, `_raw` those of all.
+/// power of the body force are those of the grains inside the tube at the end of the interval, `_raw` those of all. Flow also
+/// counts the last way of grains that have left an open tube through an end.
 /// Energies, temperature and contacts are those of all: escaped grains belong to the balance of energy. Grains that wait
 /// outside an open tube count nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -345,10 +346,13 @@ impl GrainSums {
             let (mass, inertia, spin) = (masses[grain], inertias[grain], spins[grain]);
             let moved = to[grain] - from[grain];
             sums.moved_raw += moved;
-            if inside {
-                sums.inside += 1.0;
+            let is_present = view.simulation.is_present(grain);
+            if inside || !is_present {
                 sums.moved += moved;
                 sums.mass_moved += mass * moved;
+            }
+            if inside {
+                sums.inside += 1.0;
                 sums.axial_velocity += velocity.z;
                 let since_start = heading * (to[grain] - starts[grain]);
                 sums.displaced += since_start;
@@ -356,7 +360,7 @@ impl GrainSums {
                 sums.axial_momentum += mass * velocity.z;
                 sums.angular_momentum +=
                     mass * (position.x * velocity.y - position.y * velocity.x) + inertia * spin.z;
-            } else if view.simulation.is_present(grain) {
+            } else if is_present {
                 sums.escaped_moved += mass * moved;
                 sums.escaped_momentum += mass * velocity;
             } else {

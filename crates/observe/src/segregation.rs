@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::view::View;
 
+/// Greatest place that counts: one grain in a closing throat, which has hardly any room, must not outweigh all others.
+const FARTHEST: f64 = 2.0;
+
 /// Correlations of the grains' diameters with where they are: from -1 to 1, 0 without order, with a spread of
 /// (N - 1)^(-1/2) where N grains lie at random.
 ///
@@ -11,8 +14,8 @@ use crate::view::View;
 /// all places are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Segregation {
-    /// With the radial place r/(R - (d_w + d)/2), the distance from the axis over the largest that a grain of its size can have:
-    /// positive where large grains are outside.
+    /// With the radial place r/(R - (d_w + d)/2), the distance from the axis over the largest that a grain of its size can have
+    /// beside a smooth wall: positive where large grains are outside. Beyond 2 a place counts as 2.
     pub radial: Option<f64>,
     /// With the height over the axis, against gravity's part across it, by the same length: positive where large grains are
     /// on top. None without such a part.
@@ -38,10 +41,10 @@ impl Segregation {
         let height = |grain: usize| {
             let place = bodies.position[grain];
             let up = -(place.x * gravity.x + place.y * gravity.y) / across;
-            (up / view.room(grain)).clamp(-1.0, 1.0)
+            view.over_room(up, grain).clamp(-FARTHEST, FARTHEST)
         };
         Self {
-            radial: with(&|grain| view.radial_place(grain)),
+            radial: with(&|grain| view.radial_place(grain).min(FARTHEST)),
             height: (across > 0.0).then(|| with(&height)).flatten(),
             belly: with(&|grain| view.shape.radius(bodies.position[grain].z)),
         }

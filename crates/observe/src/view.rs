@@ -34,20 +34,26 @@ impl<'a> View<'a> {
     }
 
     /// Largest distance from the axis that a grain of its size can have where it is, R - (d_w + d)/2 \[d\].
-    pub(crate) fn room(&self, grain: usize) -> f64 {
+    fn room(&self, grain: usize) -> f64 {
         let bodies = self.simulation.bodies();
         let thickness = self.simulation.wall().sphere_diameter() + bodies.diameter[grain];
         self.shape.radius(bodies.position[grain].z) - 0.5 * thickness
     }
 
-    /// r/(R - (d_w + d)/2): 0 on the axis, 1 where a grain touches the wall or is pressed into it.
+    /// r/(R - (d_w + d)/2): 0 on the axis, 1 where a grain touches a smooth wall, above 1 where it is pressed into it or
+    /// stands in a gap between its spheres.
     pub(crate) fn radial_place(&self, grain: usize) -> f64 {
         let position = self.simulation.bodies().position[grain];
-        let (from_axis, room) = (position.x.hypot(position.y), self.room(grain));
-        if from_axis < room {
-            from_axis / room
+        self.over_room(position.x.hypot(position.y), grain)
+    }
+
+    /// A distance from the axis, or a height above it, over the room that a grain has where it is; infinite without room.
+    pub(crate) fn over_room(&self, distance: f64, grain: usize) -> f64 {
+        let room = self.room(grain);
+        if room > 0.0 {
+            distance / room
         } else {
-            1.0
+            f64::INFINITY.copysign(distance)
         }
     }
 

@@ -139,6 +139,40 @@ fn what_has_leaked_closes_the_balance_of_an_open_tube() {
     assert!(summary.to_json().contains("\"leaked\": 1.0"));
 }
 
+/// The way of a grain to the outlet counts, also that in the interval in which it leaves.
+#[test]
+fn the_flow_of_an_open_tube_does_not_depend_on_how_often_it_is_sampled() {
+    let open = "tube.waves=2 tube.ends=open inlet.waiting=4 drive.body_force=0.01 run.periods=4";
+    let moved = |samples: u32| {
+        let settings = format!("{open} observe.samples_per_period={samples}");
+        let run = finish(Run::new(configuration("frictionless", &settings)).unwrap());
+        let samples = run.recorder().samples();
+        assert!(samples.last().unwrap().discharged > 10.0);
+        let rate = samples.iter().map(|it| it.flow_rate).sum::<f64>();
+        rate / samples.len() as f64
+    };
+    let (rarely, often) = (moved(1), moved(20));
+    assert!((rarely - often).abs() < 1e-9 * often, "{rarely} {often}");
+}
+
+/// Grains in the gaps of the wall are farther out than where they would touch a smooth one.
+#[test]
+fn mixing_and_segregation_do_not_depend_on_the_numbers_of_the_grains() {
+    let settings = "tube.waves=2 run.periods=3 drive.width=2.6";
+    let packed = Run::new(configuration("frictionless", settings)).unwrap();
+    let bodies = packed.simulation().bodies();
+    let mut places = bodies.position[..bodies.grains].to_vec();
+    let radial = |places: &[DVec3]| {
+        let still = vec![DVec3::ZERO; places.len()];
+        let run = finish(moving(settings, places, &still).unwrap());
+        let last = run.recorder().samples().last().unwrap();
+        last.mixing.unwrap().radial
+    };
+    let ascending = radial(&places);
+    places.reverse();
+    assert_eq!(radial(&places), ascending);
+}
+
 /// PYTHON, medium 7.
 #[test]
 fn a_run_that_is_led_past_its_end_has_a_configuration_that_repeats_it() {

@@ -181,15 +181,17 @@ impl Plan {
     pub(crate) fn check_distinct(&self) -> Result<(), ConfigurationError> {
         let mut problems = Problems::default();
         let mut seen: HashMap<Identity, usize> = HashMap::new();
-        for run in self.runs.iter().filter(|run| run.replicate == 0) {
-            if let Some(first) = seen.insert(run.identity, run.point) {
-                let [one, other] = [first, run.point].map(|point| self.points[point].in_words());
+        for (place, point) in self.points.iter().enumerate() {
+            let start = point.configuration.at_its_start();
+            let (identity, _) = Identity::of(&start, self.stopping, &self.record, 1)[0];
+            if let Some(first) = seen.insert(identity, place) {
+                let [one, other] = [first, place].map(|point| self.points[point].in_words());
                 let problem = Problem::new(
                     ProblemKind::Conflict,
                     format!("two points of the axes are the same run: {one}; {other}"),
                 )
                 .key("axes")
-                .help("an axis names a value once, and a key that changes something");
+                .help("an axis names a value once, and a key that changes something: not an amplitude that drive.schedule leads from t = 0 on");
                 problems.push(problem);
                 break;
             }

@@ -38,7 +38,9 @@ pub(super) fn in_words(estimate: &Estimate) -> String {
 fn tube(estimate: &Estimate) -> Vec<String> {
     let waiting = match estimate.waiting_grains {
         None | Some(0) => String::new(),
-        Some(waiting) => format!(", of which {waiting} and those that would stand between outlet and inlet wait"),
+        Some(waiting) => {
+            format!(", of which {waiting} and those that would stand between outlet and inlet wait")
+        }
     };
     let wall = match estimate.wall_spheres {
         0 => "smooth".to_owned(),

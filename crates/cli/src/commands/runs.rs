@@ -20,10 +20,7 @@ pub(crate) fn runs(arguments: &RunsArguments) -> Result<ExitCode, Failure> {
                 if error.kind() == std::io::ErrorKind::NotFound && folder == Path::new(RUNS) => {}
             done => done.map_err(|error| {
                 let reason = format!("cannot read {}: {error}", folder.display());
-                Failure::usage(
-                    reason,
-                    "name folders of runs, or folders that contain them",
-                )
+                Failure::usage(reason, "name folders of runs, or folders that contain them")
             })?,
         }
     }

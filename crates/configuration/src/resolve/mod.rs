@@ -103,7 +103,7 @@ impl Configuration {
 fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> Table {
     let file = sources
         .file
-        .map(|file| checked(document::parse_file(file, problems), problems));
+        .map(|file| document::parse_file(file, problems));
     let overrides = sources.overrides.iter();
     let overrides = overrides.map(|text| document::parse_override(text, problems));
     let overrides = layers::join(overrides.collect());
@@ -115,22 +115,22 @@ fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> T
             .help("name it with --preset, or in the file as preset = \"...\"");
         problems.push(problem);
     }
-    refuse_derived(&overrides, problems);
-    let overrides = checked(overrides, problems);
+    for layer in above.iter().chain([&overrides]) {
+        refuse_derived(layer, problems);
+    }
     let mut table = Table::new();
     if let Some(name) = preset_name(sources.preset, file.as_ref(), problems)
         && let Some(Preset { name, text, .. }) = preset(&name)
     {
         let source = Source::new(SourceKind::Preset, format!("preset {name}"), text);
-        let preset = checked(document::parse(&source, problems), problems);
+        let preset = document::parse(&source, problems);
+        contract::check(&preset, problems);
         layers::lay_over(&mut table, preset, problems);
     }
-    let above = above.iter().map(|layer| {
-        refuse_derived(layer, problems);
-        checked(layer.clone(), problems)
-    });
-    let above: Vec<Table> = above.collect();
-    for layer in file.into_iter().chain([overrides]).chain(above) {
+    let above = above.iter().cloned();
+    for mut layer in file.into_iter().chain([overrides]).chain(above) {
+        layers::complete_schedule(&table, &mut layer);
+        contract::check(&layer, problems);
         layers::lay_over(&mut table, layer, problems);
     }
     for aside in ["preset", "resolved"] {
@@ -150,11 +150,6 @@ fn refuse_derived(layer: &Table, problems: &mut Problems) {
             .help("set the keys that they follow from; `peristalsis schema` lists them");
         problems.push(problem);
     }
-}
-
-fn checked(layer: Table, problems: &mut Problems) -> Table {
-    contract::check(&layer, problems);
-    layer
 }
 
 /// The one preset that command line and file name.

@@ -84,7 +84,8 @@ pub(super) fn pressed(late: &[Sample]) -> f64 {
 /// Pumping against a body force: late means, each power with its error from block averages. Units: d, m, t.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pumping {
-    /// The pressure rise over a wavelength that it stands for, Dp = -N m g lambda/(L pi a^2) \[m/(d t^2)\], m the mean mass.
+    /// The pressure rise over a wavelength that it stands for, Dp = -N m g lambda/(L pi a^2) \[m/(d t^2)\], m the mean mass of
+    /// the distribution of sizes: the same for all seeds.
     pub pressure_rise: f64,
     /// Useful power of the flow against the body force, -g sum m v_z over the grains inside; negative where they go with it.
     pub useful_power: (f64, f64),
@@ -106,7 +107,7 @@ impl Pumping {
         let power = |sample: &Sample| match (across, up) {
             (0.0, 0.0) => sample.body_power,
             // That of the rest of gravity is not pumping.
-            _ => force * sample.axial_momentum,
+            _ => force * sample.mass_flow_rate * length,
         };
         let useful_power = -mean_of(late, power);
         let wall_power = mean_of(late, |sample| sample.wall_power);

@@ -8,7 +8,11 @@ use peristalsis_configuration::{Origin, Problem, ProblemKind, Problems};
 use crate::plan::SettingValue;
 
 /// Keys that an axis cannot vary, with what to do instead.
-const NOT_VARIED: [(&str, &str); 2] = [
+const NOT_VARIED: [(&str, &str); 3] = [
+    (
+        "preset",
+        "all runs of a study build on one preset: write a study file for each, or vary the keys in which they differ",
+    ),
     (
         "run.seed",
         "every run of a study has a seed of its own: take more `replicates`",
