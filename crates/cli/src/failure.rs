@@ -1,6 +1,6 @@
 //! Errors as a person reads them, and the exit code that goes with each.
 
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -133,7 +133,7 @@ impl Failure {
                     true => "nothing that was measured is lost",
                     false => "what could not be saved either is computed again",
                 },
-                folder.display()
+                quoted(folder)
             )),
             Self::Results { folder, source: RunError::Format(error) } if !is_closed(error) => {
                 failed(unwritten(folder))
@@ -192,6 +192,21 @@ impl Failure {
     }
 }
 
+/// A path as one word of a POSIX shell.
+pub(crate) fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |letter: char| {
+        letter.is_ascii_alphanumeric()
+            || "/._-+=:@%".contains(letter)
+            || cfg!(windows) && letter == '\\'
+    };
+    if !text.is_empty() && text.chars().all(plain) {
+        text
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    }
+}
+
 /// An exit code, and what to do.
 type Advice = (u8, Option<String>);
 
@@ -215,7 +230,7 @@ fn is_closed(error: &FormatError) -> bool {
 
 /// What to do about results that could not all be written.
 fn unwritten(folder: &RunFolder) -> String {
-    let path = folder.path().display();
+    let path = quoted(folder.path());
     if !folder.path().exists() {
         return "its folder is gone, and what was in it: begin anew".to_owned();
     }
@@ -259,7 +274,7 @@ fn of_run(error: &RunError) -> Advice {
             wrong(format!(
                 "let it go on: peristalsis run --resume {0} --periods N (or --duration T), N beyond its end; draw its figures \
                  again: peristalsis figures {0}",
-                folder.display()
+                quoted(folder)
             ))
         }
         RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }) => {
@@ -275,7 +290,7 @@ fn of_run(error: &RunError) -> Advice {
         RunError::NothingToResume { folder, .. } if folder.join(files::CONFIGURATION).is_file() => {
             wrong(format!(
                 "begin it anew in another folder: peristalsis run {} --out DIR",
-                folder.join(files::CONFIGURATION).display()
+                quoted(&folder.join(files::CONFIGURATION))
             ))
         }
         RunError::NothingToResume { .. } => wrong(
@@ -306,6 +321,14 @@ fn of_study(error: &StudyError) -> Advice {
         error if error.is_closed() => failed(
             "nothing that was finished is lost: make the store writable for this user, or work in a copy of it",
         ),
+        StudyError::Io { source, .. } | StudyError::Format(FormatError::Io { source, .. })
+            if matches!(
+                source.kind(),
+                ErrorKind::NotADirectory | ErrorKind::AlreadyExists
+            ) =>
+        {
+            wrong("a file has the name of a folder: name another")
+        }
         StudyError::Io { .. }
         | StudyError::Format(_)
         | StudyError::Index { .. }
@@ -349,7 +372,7 @@ fn of_state(path: &Path, source: &RunError) -> String {
     if !configuration.is_file() {
         return remedy.to_owned();
     }
-    let again = format!("peristalsis run {} --out DIR", configuration.display());
+    let again = format!("peristalsis run {} --out DIR", quoted(&configuration));
     format!("{remedy}, or begin anew in another folder: {again}")
 }
 

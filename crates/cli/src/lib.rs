@@ -27,7 +27,7 @@ use arguments::{Arguments, Command};
 /// and those that ask for help, end the process.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = Arguments::parse_from(words);
-    let outcome = match arguments.command {
+    let outcome = stop::outlive_limits_of_files().and_then(|()| match arguments.command {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Runs(arguments) => commands::runs::runs(&arguments),
         Command::Figures(arguments) => commands::figures::figures(&arguments),
@@ -43,7 +43,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Validate(arguments) => commands::validate::validate(&arguments),
         Command::Study(command) => commands::study::study(&command),
         Command::Completions(arguments) => commands::completions::completions(&arguments),
-    };
+    });
     match outcome {
         Ok(code) => code,
         Err(failure) => failure.report(),

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 #[cfg(unix)]
-use signal_hook::consts::{SIGHUP, SIGUSR1};
+use signal_hook::consts::{SIGHUP, SIGUSR1, SIGXFSZ};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::failure::{Failure, say};
@@ -91,6 +91,13 @@ impl Stop {
     pub(crate) fn exit_code(&self) -> ExitCode {
         self.requested().map_or(ExitCode::SUCCESS, ExitCode::from)
     }
+}
+
+/// Makes of the signal that a file may not grow an error of writing, which is told and loses nothing.
+pub(crate) fn outlive_limits_of_files() -> Result<(), Failure> {
+    #[cfg(unix)]
+    signal_hook::flag::register(SIGXFSZ, Arc::default()).map_err(Failure::Signals)?;
+    Ok(())
 }
 
 /// The signals that ask to stop.

@@ -141,7 +141,16 @@ impl Contract<'_> {
 
     fn wrong_length(&mut self, item: &Item, length: &str, schema: &Value, path: &str) {
         let place = (&item.origin, "this list");
-        let message = format!("the list {path} is too {length}");
+        let bound = if length == "short" {
+            "minItems"
+        } else {
+            "maxItems"
+        };
+        let (relation, bound) = match (length, schema[bound].as_u64().unwrap_or(0)) {
+            ("short", least) => ("at least", least),
+            (_, most) => ("at most", most),
+        };
+        let message = format!("the list {path} is too {length}: it has {relation} {bound} values");
         let kind = ProblemKind::OutOfRange;
         self.refuse(kind, path, place, message, allowed(schema));
     }

@@ -48,7 +48,7 @@ pub fn encode(table: &Table) -> String {
 /// The table in CSV text, with empty units, descriptions and metadata.
 ///
 /// A column is text if any of its fields is quoted or none of the following fits: integers if every field is one,
-/// booleans if every field is `true` or `false`, reals if every field is a number or empty. A column without rows, or
+/// booleans if every field is `true` or `false` (or as Python writes them, `True` or `False`), reals if every field is a number or empty. A column without rows, or
 /// with empty fields only, is taken for reals.
 ///
 /// # Errors
@@ -113,13 +113,22 @@ fn values_of(fields: Vec<Field<'_>>) -> Values {
     let is_text = fields.iter().any(|field| field.quoted);
     let found = (!is_text).then(|| {
         (parsed(&fields, |text| text.parse().ok()).map(Values::Integer))
-            .or_else(|| parsed(&fields, |text| text.parse().ok()).map(Values::Boolean))
+            .or_else(|| parsed(&fields, boolean).map(Values::Boolean))
             .or_else(|| parsed(&fields, real).map(Values::Real))
     });
     found.flatten().unwrap_or_else(|| {
         let texts = fields.into_iter().map(|field| field.text.into_owned());
         Values::Text(texts.collect())
     })
+}
+
+/// As this program writes it, or Python.
+fn boolean(text: &str) -> Option<bool> {
+    match text {
+        "true" | "True" => Some(true),
+        "false" | "False" => Some(false),
+        _ => None,
+    }
 }
 
 /// The values of all fields, if every one of them has one.

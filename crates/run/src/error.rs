@@ -59,7 +59,7 @@ pub enum RunError {
         source: std::io::Error,
     },
     /// A trajectory that cannot be written as asked.
-    #[error("no such trajectory: {reason}")]
+    #[error("cannot take these frames: {reason}")]
     Trajectory {
         /// Why.
         reason: String,
@@ -93,7 +93,7 @@ pub enum RunError {
         help: String,
     },
     /// There is no run to go on with.
-    #[error("{} holds no run that can be continued: {reason}", folder.display())]
+    #[error("{} holds no state of a run: {reason}", folder.display())]
     NothingToResume {
         /// The folder.
         folder: PathBuf,

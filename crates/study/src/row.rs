@@ -135,11 +135,15 @@ impl Row {
             ));
         }
         let value = |name: &str| self.table.reals(name).map_or(f64::NAN, |found| found[0]);
+        let is_censored = self.table.booleans("censored").is_ok_and(|it| it[0]);
         // An empty cell reads as NaN: a quantity that the run does not have, such as J/Jmax of a wave that pauses, or of a tube
         // that all grains have left.
         let is_wrong = |name: &str, found: f64| match name {
             "time" => !(found > 0.0 && found.is_finite()),
-            "transition_time" => found < 0.0 || found > value("time"),
+            "transition_time" => {
+                // A censored run ended before a transition.
+                found < 0.0 || found > value("time") || is_censored && found.is_finite()
+            }
             "flow_rate" => !found.is_finite(),
             "flow_rate_ratio" => found.is_infinite(),
             _ => found < 0.0 || found.is_infinite(),

@@ -7,7 +7,7 @@ use peristalsis_configuration::{Configuration, HOUR, ScheduledParameter};
 use peristalsis_run::{RunFolder, files};
 use serde_json::{Value, json};
 
-use super::run::{RUNS, measured};
+use super::run::{DISCHARGE, MASS_FLOW, RUNS, measured};
 use crate::arguments::RunsArguments;
 use crate::commands::{print, print_json, rounded};
 use crate::failure::Failure;
@@ -118,6 +118,10 @@ fn entry(path: &Path) -> Value {
         "mass_flow": mass_flow,
         "mass_flow_error": mass_flow_error,
         "mass_flow_unit": mass_flow_unit,
+        "mass_flow_is": mass_flow.map(|_| match of("open").is_object() {
+            true => DISCHARGE,
+            false => MASS_FLOW,
+        }),
         "transition_time": of("transition_time"),
         "warnings": warnings,
     })
@@ -230,7 +234,12 @@ fn row(run: &Value) -> [String; 10] {
     };
     let missing = || "–".to_owned();
     let unit = run["mass_flow_unit"].as_str().unwrap_or_default();
-    let mass_flow = with_error("mass_flow").map_or_else(missing, |flow| format!("{flow} {unit}"));
+    let what = match run["mass_flow_is"].as_str() {
+        Some(DISCHARGE) => " discharged",
+        _ => "",
+    };
+    let mass_flow =
+        with_error("mass_flow").map_or_else(missing, |flow| format!("{flow} {unit}{what}"));
     // Lengths are rounded up to whole samples, and may have any number of digits.
     let in_thousandths = |key: &str| {
         number(key).map_or("–".to_owned(), |it| {

@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::{fs, io};
 
-use peristalsis_configuration::document::{self, Item, Node, Table};
+use peristalsis_configuration::document::{self, Entry, Item, Node, Table};
 use peristalsis_configuration::{
     Configuration, ConfigurationError, InitialState, Origin, Problem, ProblemKind, Problems,
     SourceFile, Sources, check_against, file_keys, file_of, join, word,
@@ -82,6 +82,8 @@ struct Base {
     preset: Option<String>,
     /// Name and text of the configuration file.
     file: Option<(String, String)>,
+    /// `states`, where it is written.
+    states: Option<Entry>,
     /// The table `base`.
     table: Table,
 }
@@ -153,7 +155,12 @@ impl Specification {
         let file_span = document::entry(&table, "file").map(|entry| entry.item.origin.span());
         let base = Base {
             preset: keys.preset,
-            file: keys.file.map(|name| file(&name)).transpose()?,
+            file: keys
+                .file
+                .map(|name| file(&name))
+                .transpose()
+                .map_err(|error| unreadable(&table, &error))?,
+            states: document::entry(&table, "states").cloned(),
             table: match document::entry(&table, "base").map(|entry| &entry.item.node) {
                 Some(Node::Table(base)) => base.clone(),
                 _ => Table::new(),
@@ -256,11 +263,13 @@ impl Specification {
         let settings = choice
             .iter()
             .map(|(key, origin, value)| document::setting(key, origin, (*value).clone()));
-        // All in one layer, so that two axes for two alternatives (width and amplitude) are found to conflict.
-        let above = [self.base.table.clone(), join(settings.collect())];
-        // Below `base`, which does not name a state where `states` does.
-        let state = state.map(|state| format!("initial.state={}", word(state)));
-        let overrides: Vec<String> = state.into_iter().collect();
+        let state = state
+            .zip(self.base.states.as_ref())
+            .map(|(state, entry)| initial_state(state, entry));
+        // `base` does not name a state where `states` does. The axes are one layer, so that two for two alternatives (width and
+        // amplitude) are found to conflict.
+        let layers = [self.base.table.clone(), join(settings.collect())];
+        let above: Vec<Table> = state.into_iter().chain(layers).collect();
         Configuration::from_sources_and(
             &Sources {
                 file: self
@@ -269,7 +278,7 @@ impl Specification {
                     .as_ref()
                     .map(|(name, text)| SourceFile { name, text }),
                 preset: self.base.preset.as_deref(),
-                overrides: &overrides,
+                overrides: &[],
             },
             &above,
         )
@@ -307,6 +316,32 @@ impl Specification {
         problems.push(problem);
         Ok(problems.check()?)
     }
+}
+
+/// The layer that sets a state of the list `states`.
+fn initial_state(state: InitialState, states: &Entry) -> Table {
+    let name = word(state);
+    let Node::Array(items) = &states.item.node else {
+        return Table::new();
+    };
+    let is_it = |item: &&Item| matches!(&item.node, Node::Text(text) if *text == name);
+    let item = items.iter().find(is_it).cloned();
+    item.map_or_else(Table::new, |item| {
+        document::setting("initial.state", &states.key, item)
+    })
+}
+
+/// The problem of a configuration file that cannot be read.
+fn unreadable(table: &Table, error: &StudyError) -> ConfigurationError {
+    let mut problem = Problem::new(ProblemKind::Missing, error.to_string())
+        .key("file")
+        .help("a configuration file, its path from the folder of the study file");
+    if let Some(entry) = document::entry(table, "file") {
+        problem = problem.at(&entry.item.origin, "this file");
+    }
+    let mut problems = Problems::default();
+    problems.push(problem);
+    problems.check().expect_err("a problem")
 }
 
 /// Checks the keys of a study beyond the schema.

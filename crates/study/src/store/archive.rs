@@ -7,7 +7,7 @@ use std::path::{Component, Path};
 
 use peristalsis_formats::atomic;
 
-use super::{RUNS, Store, Verdict, done};
+use super::{RUNS, State, Store, Verdict, done};
 use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::store::entry::Entry;
@@ -24,6 +24,8 @@ pub struct Packed {
     /// Runs of an archive that were left out since they are not finished or their files differ from their seal, with the
     /// reason.
     pub refused: Vec<(Identity, String)>,
+    /// Finished runs that an archive does not hold, for their rows were imported and they have no files here.
+    pub without_files: usize,
 }
 
 impl Store {
@@ -33,9 +35,17 @@ impl Store {
     /// Errors of reading and writing.
     pub fn pack(&self, archive: &Path) -> Result<Packed> {
         let mut entries = self.index()?.entries()?;
+        entries.retain(|_, entry| entry.state == State::Done);
+        let finished = entries.len();
         entries.retain(|_, entry| entry.is_computed());
+        let mut packed = Packed {
+            without_files: finished - entries.len(),
+            ..Packed::default()
+        };
         let identities: BTreeSet<Identity> = entries.into_keys().collect();
-        let mut packed = Packed::default();
+        if let Some(folder) = archive.parent() {
+            fs::create_dir_all(folder).map_err(StudyError::io("make", folder))?;
+        }
         atomic::write_with(archive, |file| {
             let mut builder = tar::Builder::new(io::BufWriter::new(file));
             for identity in &identities {
@@ -64,6 +74,9 @@ impl Store {
             .prefix(".import-")
             .tempdir_in(self.path())
             .map_err(StudyError::io("make a folder in", self.path()))?;
+        if file.metadata().is_ok_and(|it| it.len() == 0) {
+            return Err(refused("it is empty".to_owned()));
+        }
         let mut archive = tar::Archive::new(io::BufReader::new(file));
         let mut identities = BTreeSet::new();
         let broken = |_: io::Error| refused("it is no tar archive, or damaged".to_owned());

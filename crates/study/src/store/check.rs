@@ -18,7 +18,7 @@ pub struct Verification {
     pub whole: usize,
     /// Finished runs with an imported row and no files.
     pub imported: usize,
-    /// Runs whose files differ from their seal, with what was wrong; the files were moved aside.
+    /// Runs whose files differ from their seal, with what was wrong; what there is of them was moved aside.
     pub quarantined: Vec<(Identity, String)>,
     /// Runs that can go on from a checkpoint.
     pub checkpointed: usize,
@@ -106,6 +106,13 @@ impl Store {
             // What was computed here goes before what was imported; what was not finished does not.
             if entry.state == State::Done || !entries.contains_key(&identity) {
                 entries.insert(identity, entry);
+            }
+        }
+        for (identity, entry) in index.entries()? {
+            let is_lost = entry.is_computed() && !entries.contains_key(&identity);
+            if is_lost && !leases.contains_key(&identity) {
+                let reason = "its files are gone".to_owned();
+                found.quarantined.push((identity, reason));
             }
         }
         for identity in self.identities(QUARANTINE)? {

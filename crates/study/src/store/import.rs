@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use peristalsis_formats::{FormatError, atomic, csv, hexadecimal, read_table};
@@ -100,6 +101,11 @@ impl Store {
 /// The rows in a table of a file, whose ending says how it is written.
 fn rows_of(path: &Path) -> Result<Vec<Row>> {
     let table = read_table(path).map_err(|error| match error {
+        FormatError::Io { source, .. } if source.kind() == ErrorKind::InvalidData => {
+            let reason =
+                "it is no text; names of tables end in .csv or .parquet, of archives in .tar";
+            StudyError::not_rows(path)(reason.to_owned())
+        }
         FormatError::Io { source, .. } => StudyError::read(path)(source),
         other => StudyError::not_rows(path)(other.to_string()),
     })?;

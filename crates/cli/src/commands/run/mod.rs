@@ -18,12 +18,12 @@ use peristalsis_run::{
 use crate::arguments::{RunArguments, Threads};
 use crate::commands::trajectory::{in_words as in_one_line, request};
 use crate::commands::{counted, packing, print, rounded, say, tell, warn_besides};
-use crate::failure::Failure;
+use crate::failure::{Failure, quoted};
 use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
 use crate::stop::Stop;
 
-pub(crate) use self::words::measured;
+pub(crate) use self::words::{DISCHARGE, MASS_FLOW, measured};
 use self::words::{how_far, in_words};
 use self::work::{Ending, Work};
 
@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             tell("there are no grains to draw: the run has no figures".to_owned());
         }
     }
-    let place = work.folder.path().display();
+    let place = quoted(work.folder.path());
     match outcome.ending {
         Ending::Unwritten(source) => Err(Failure::Trajectory {
             folder: work.folder.path().to_owned(),

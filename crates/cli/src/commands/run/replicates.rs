@@ -14,12 +14,12 @@ use peristalsis_run::{
 };
 use serde_json::{Value, json};
 
-use super::words::{mass_flow, measured};
+use super::words::{DISCHARGE, MASS_FLOW, mass_flow, measured};
 use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, not_diverged, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
 use crate::commands::{code_of, counted, print, print_json, say, significant, tell, warn_besides};
-use crate::failure::Failure;
+use crate::failure::{Failure, quoted};
 use crate::progress::Display;
 use crate::sources::{configuration, name};
 use crate::stop::Stop;
@@ -214,6 +214,14 @@ fn asks_for_files(arguments: &RunArguments) -> bool {
     arguments.csv || !arguments.frames.trajectory.is_empty()
 }
 
+/// What [`mass_flow`] is.
+fn name_of_flow(summary: &Summary) -> &'static str {
+    match summary.discharge {
+        Some(_) => DISCHARGE,
+        None => MASS_FLOW,
+    }
+}
+
 /// The result of a replicate, in a line.
 fn line(seed: u64, outcome: &Outcome) -> String {
     let summary = &outcome.summary;
@@ -229,7 +237,11 @@ fn line(seed: u64, outcome: &Outcome) -> String {
         });
     }
     if let Some((flow, unit)) = mass_flow(summary) {
-        words.push(format!("mass flow {} {unit}", measured(flow)));
+        words.push(format!(
+            "{} {} {unit}",
+            name_of_flow(summary),
+            measured(flow)
+        ));
     }
     if words.is_empty() {
         words.push("no J/Jmax".to_owned());
@@ -318,7 +330,10 @@ fn conclude(
             text += &format!("J/Jmax = {}\n", flow.in_words());
         }
         if let Some((flow, unit)) = &mass_flow {
-            text += &format!("mass flow in {unit} = {}\n", flow.in_words());
+            let name = complete
+                .first()
+                .map_or(MASS_FLOW, |it| name_of_flow(&it.summary));
+            text += &format!("{name} in {unit} = {}\n", flow.in_words());
         }
         // Without a wave there is nothing to pass through.
         let runs = flow.as_ref().map_or(0, |_| complete.len());
@@ -332,7 +347,7 @@ fn conclude(
         }
         print(&text)?;
     }
-    let (place, complete) = (folder.display(), counted(complete.len(), "seed"));
+    let (place, complete) = (quoted(folder), counted(complete.len(), "seed"));
     let mut is_well = true;
     for (seed, _, outcome) in worked {
         let failure = match outcome {

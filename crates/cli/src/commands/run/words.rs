@@ -174,8 +174,12 @@ fn wear(summary: &Summary) -> String {
     format!("\nwear: sliding on the wall takes {power}, {per_area} of wall")
 }
 
-/// Mass that an open tube discharges, of another that flows along the wave, with its error and unit; `None` of a periodic tube
-/// without units in SI, where J/Jmax says as much.
+/// What tells a discharge from a mass flow.
+pub(crate) const DISCHARGE: &str = "discharge";
+pub(crate) const MASS_FLOW: &str = "mass flow";
+
+/// Mass that an open tube discharges, of another that flows along the wave, with its error and its unit; `None` of a periodic
+/// tube without units in SI, where J/Jmax says as much.
 pub(crate) fn mass_flow(summary: &Summary) -> Option<((f64, f64), &'static str)> {
     let discharged = summary.discharge.map(|it| it.rate);
     let own = discharged.unwrap_or_else(|| summary.mass_flow_rate());

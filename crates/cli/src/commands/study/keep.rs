@@ -107,6 +107,12 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     say_if_replaced(&arguments.archive);
     let packed = store.pack(&arguments.archive)?;
     let archive = arguments.archive.display();
+    if packed.without_files > 0 {
+        say(&format!(
+            "left out, for they were imported as rows and have no files: {}; study export writes their rows",
+            counted(packed.without_files, "finished run")
+        ));
+    }
     print(&format!(
         "{} in {archive}\n",
         counted(packed.runs, "finished run")

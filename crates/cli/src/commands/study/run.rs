@@ -8,7 +8,7 @@ use super::progress::StudyDisplay;
 use super::status::print_status;
 use super::{RunArguments, store_path};
 use crate::commands::{counted, say, tell};
-use crate::failure::Failure;
+use crate::failure::{Failure, quoted};
 use crate::sources;
 use crate::stop::Stop;
 
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let survey = store.survey()?;
     print_status(arguments.json, &store, &survey)?;
     let tell = |text: String| tell(arguments.quiet, &text);
-    let (file, place) = (arguments.file.display(), path.display());
+    let (file, place) = (quoted(&arguments.file), quoted(&path));
     let again = format!("go on with: peristalsis study run {file} --store {place}");
     match ending {
         Ending::Complete => {

@@ -8,7 +8,7 @@ use peristalsis_study::Store;
 
 use super::{SubmitArguments, store_path};
 use crate::commands::{counted, print, refuse_loss, say_if_replaced};
-use crate::failure::Failure;
+use crate::failure::{Failure, quoted};
 use crate::sources;
 
 /// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
@@ -118,17 +118,6 @@ fn slurm_time(time: Duration) -> String {
     let (days, hours) = (time / 86_400, time / 3_600 % 24);
     let (minutes, seconds) = (time / 60 % 60, time % 60);
     format!("{days}-{hours:02}:{minutes:02}:{seconds:02}")
-}
-
-/// A path as one word of a POSIX shell.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+=:@%".contains(letter);
-    if !text.is_empty() && text.chars().all(plain) {
-        text
-    } else {
-        format!("'{}'", text.replace('\'', r"'\''"))
-    }
 }
 
 /// This program: the file that runs or, where Python runs it, the command that was called.

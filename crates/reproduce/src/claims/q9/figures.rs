@@ -28,13 +28,12 @@ fn flow_panel(pump: &Pump<'_>) -> ChartPanel {
     }))
 }
 
-/// Nothing is done against no pressure.
+/// Of grains there is none without a pressure; that of the fluid rises from 0.
 fn efficiency_panel(pump: &Pump<'_>) -> ChartPanel {
     let panel = ChartPanel::new("", "efficiency, *η*").y_range(0.0..=1.0);
     let of_grains = |point: &Point<'_>| {
-        efficiency(point)
-            .filter(|_| point.flow.value > 0.0)
-            .or((point.control == 0.0).then_some(Uncertain::normal(0.0, 0.0)))
+        let pumps = point.flow.value > 0.0 && point.control != 0.0;
+        pumps.then(|| efficiency(point)).flatten()
     };
     with_series(panel, pump, of_grains).with_all(of_fluid(pump, |load| match load {
         0.0 => Some(0.0),
