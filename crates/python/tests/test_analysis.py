@@ -60,6 +60,56 @@ def test_a_function_of_python_gives_what_ours_gives() -> None:
         analysis.Collapse(curves, broken).quality(at)
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, 0.0, -1.0])
+def test_a_collapse_refuses_a_number_that_it_cannot_take_and_says_where_it_is(bad: float) -> None:
+    for column, name in enumerate(("x", "y", "error"), 1):
+        curves = ising_like([8, 16, 32])
+        curves[1][column][4] = bad
+        for scaling in ("finite_size", "critical_line", lambda a, p, x, y, error: (x, y, error)):
+            # The critical scalings take logarithms of y.
+            if np.isfinite(bad) and (name == "x" or (name == "y" and scaling != "critical_line")):
+                analysis.Collapse(curves, scaling)
+                continue
+            with pytest.raises(AnalysisError, match=f"curve 1: {name}: value 4 is {bad:g}, "):
+                analysis.Collapse(curves, scaling)
+    with pytest.raises(AnalysisError, match=f"curve 0: its p is {bad:g}, "):
+        analysis.Collapse([(bad, *curve[1:]) for curve in ising_like([8, 16])], "finite_size")
+
+
+def test_a_search_says_which_of_its_arguments_is_wrong() -> None:
+    curves = ising_like([8, 16])
+    collapse, start, steps = analysis.Collapse(curves, "finite_size"), [0.2, 0.8, 2.3], [0.1, 0.2, 0.05]
+    for call, reason in (
+        (lambda: analysis.Collapse(curves[:1], "finite_size"), "compares 2 curves or more, not 1"),
+        (lambda: analysis.Collapse([*curves, (32.0, [], [], [])], "finite_size"), "curve 2 has no points"),
+        (lambda: collapse.fit(start, [0.1, 0.0, 0.1]), "steps: value 1 is 0, but must be positive"),
+        (lambda: collapse.fit([np.nan, 0.8, 2.3], steps), "start: value 0 is nan"),
+        (lambda: collapse.fit(start, steps[:2]), "steps has a value for each of 3 parameters, not 2"),
+        (lambda: collapse.fit(start, steps, known=[None, 1.0]), r"known\[1\] counts as a point, and needs an error"),
+        (lambda: collapse.fit(start, steps, leave_one_out=True), "needs 3 curves or more, not 2"),
+        (lambda: collapse.quality([0.2, np.inf, 2.3]), "parameters: value 1 is inf"),
+    ):
+        with pytest.raises(AnalysisError, match=reason):
+            call()
+
+
+def test_errors_name_the_argument() -> None:
+    x, y, error = [1.0, 2.0, 4.0], [1.0, 2.0, 3.0], [0.1, 0.1, 0.1]
+    for call, reason in (
+        (lambda: analysis.fraction_crossing([2.5, 2.6], [True]), "unequal length: width 2, jammed 1"),
+        (lambda: analysis.hysteresis(x, [1, 1, 0], x, [1, 2, 0]), "jammed_jammed: value 1 is 2"),
+        (lambda: analysis.fit_line(x, y, [0.1, 0.0, 0.1]), "error: value 1 is 0, but must be positive"),
+        (lambda: analysis.fit_line(x, [1.0, np.nan, 2.0], error), "y: value 1 is nan, which is not a finite number"),
+        (lambda: analysis.fit_law("power", x, y, error, critical_width=(2.8, -1.0)), "critical_width has an error of -1"),
+        (lambda: analysis.jump_height((x, y, error), (x, y, [0.1, 0.1, -1.0]), 2.8), "lower errors: value 2 is -1"),
+        (lambda: analysis.fit_lifetime([1.0, 0.0, 2.0]), "time: value 1 is 0, but a transition comes after 0"),
+        (lambda: analysis.Survival([1.0, 2.0], [[True, False]]), "observed: a column has one dimension, not 2"),
+        (lambda: analysis.ensemble_moments([x, [1.0, 2.0, np.inf], y]), "replicate 1: value 2 is inf"),
+    ):
+        with pytest.raises(ValueError, match=reason):
+            call()
+
+
 def test_a_law_of_divergence_by_hand() -> None:
     width = np.linspace(2.4, 2.7, 8)
     time = 3.0 * (2.8 - width) ** -1.5
@@ -75,7 +125,7 @@ def test_a_law_of_divergence_by_hand() -> None:
         analysis.fit_law("power", width[:2], time[:2], time[:2])
     with pytest.raises(AnalysisError, match="unknown variant"):
         analysis.fit_law("parabolic", width, time, time)
-    with pytest.raises(ValueError, match="unequal length: 8, 7"):
+    with pytest.raises(ValueError, match="unequal length: x 8, y 7, error 8"):
         analysis.fit_line(width, time[1:], time)
 
 
@@ -129,7 +179,7 @@ def test_survival_by_hand() -> None:
     # 1 up to 1, 3/4 up to 3, 3/8 up to 4
     assert curve.restricted_moments(4.0).mean.value == pytest.approx(1 + 1.5 + 0.375)
     assert plot.survival(curve).get_ylabel() == "runs without a transition, $S(t)$"
-    with pytest.raises(ValueError, match="4 times, but 3 observed"):
+    with pytest.raises(ValueError, match="unequal length: time 4, observed 3"):
         analysis.Survival([1.0, 2.0, 3.0, 4.0], [True, False, True])
 
 

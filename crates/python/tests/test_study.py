@@ -44,6 +44,17 @@ def test_a_study_from_its_plan_to_its_rows(tmp_path: Path) -> None:
     assert "4 runs planned" in repr(study)
 
 
+def test_runs_that_fail_are_told(tmp_path: Path) -> None:
+    crowded = {**WIDTHS, "base": {"tube.waves": 2, "run.periods": 1}, "axes": [{"key": "grains.number", "values": [20, 20_000]}]}
+    study = peristalsis.study(crowded, store=tmp_path / "store")
+    for _ in range(2):
+        with pytest.warns(peristalsis.PeristalsisWarning, match="2 of 4 runs failed: widths-failed.csv") as told:
+            assert study.run(workers=1) == "complete"
+        assert told[0].filename == __file__ and str(tmp_path / "store") in str(told[0].message)
+    reasons = next(Path(file) for file in study.export(tmp_path / "tables") if file.endswith("widths-failed.csv"))
+    assert "20000 grains do not fit" in reasons.read_text()
+
+
 def test_from_a_file(tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_text('name = "one"\npreset = "frictionless"\nreplicates = 3\n')

@@ -48,25 +48,25 @@ def positive(name: str, value: Any) -> float:
     return found
 
 
-def numeric(value: Any, error: type[ValueError] = ValueError) -> None:
+def numeric(name: str, value: Any, error: type[ValueError] = ValueError) -> None:
     """Refuses what NumPy makes numbers of that are not those meant: texts, times, complex numbers, which lose a part, and
     masked entries, which become what stands below the mask."""
     if (kind := np.asarray(value).dtype).kind in "cmMSTU":
-        raise TypeError(f"an array of numbers is wanted, not one of {kind}")
-    unmasked(value, error)
+        raise TypeError(f"{name}: an array of numbers is wanted, not one of {kind}")
+    unmasked(name, value, error)
 
 
-def unmasked(value: Any, error: type[ValueError] = ValueError) -> None:
+def unmasked(name: str, value: Any, error: type[ValueError] = ValueError) -> None:
     """Refuses masked entries."""
     if isinstance(value, np.ma.MaskedArray) and (places := np.flatnonzero(np.ma.getmaskarray(value))).size:
-        raise error(f"value {places[0]} is masked: leave it out, as with .compressed()")
+        raise error(f"{name}: value {places[0]} is masked: leave it out, as with .compressed()")
 
 
 def numbers(name: str, value: Any) -> Array:
     """A new array of numbers."""
-    unmasked(value)
+    unmasked(name, value)
     try:
-        numeric(value)
+        numeric(name, value)
         return np.array(value, dtype=float)
     except (TypeError, ValueError):
         raise TypeError(f"{name} is an array of numbers, not {value!r}") from None

@@ -9,7 +9,9 @@ import numpy.typing as npt
 
 from ._given import of_kind
 from ._simulation import Simulation
-from ._style import DOUBLE_COLUMN, GREY, drawing, title
+from ._fit import set_title
+from ._style import DOUBLE_COLUMN, GREY, drawing
+from ._title import SEPARATOR, is_prescribed, title, unit
 
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection
@@ -75,7 +77,7 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     # An open tube has no images beyond its ends.
     repeats = np.inf if simulation.configuration["tube"].get("ends") == "open" else length
     escaped = from_axis > np.interp(grains[:, 2], rings, radii, period=length) + 0.5 * diameters
-    reach = 1.06 * (radii.max() + (0.0 if _is_prescribed(simulation) else 0.5))
+    reach = 1.06 * (radii.max() + (0.0 if is_prescribed(simulation) else 0.5))
     shown = from_axis < _REACH * radii.mean()
     if (escaped & shown).any():
         reach = max(reach, float((np.abs(grains[:, 1]) + 0.6 * diameters)[escaped & shown].max()))
@@ -85,7 +87,7 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     fastest = float(f"{np.abs(velocity[shown]).max(initial=0.0):.1e}")
     velocity = velocity / (speed or fastest or 1.0)
     with drawing(ax, DOUBLE_COLUMN, 165.0 * 2 * reach / (end - begin) + 30.0) as new:
-        if _is_prescribed(simulation):
+        if is_prescribed(simulation):
             place = np.linspace(begin, end, 400)
             outline = np.interp(along(place) % length, rings, radii, period=length)
             for side in (1.0, -1.0):
@@ -101,13 +103,14 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
         name = "$z/d$" if heading > 0 else "$(L - z)/d$"
         new.set(xlabel=name + part, ylabel="$y/d$", aspect="equal", xlim=(begin, end), ylim=(-reach, reach))
         clock = simulation.time * simulation.configuration["drive"]["strain_rate"]
-        now = f"$t/T$ = {clock:.2f}" if speed else f"$t$ = {simulation.time:.1f} $t$"
+        now = f"$t/T$ = {clock:.2f}" if speed else f"$t$ = {simulation.time:.1f} ${unit(simulation, 't')}$"
         lost = f",  {simulation.escaped} of {len(grains)} grains escaped" if simulation.escaped else ""
         if ax is None:
-            new.set_title(f"{title(simulation)},  {now}{lost}")
+            set_title(new, f"{title(simulation)},  {now}{lost}", SEPARATOR)
         elif lost:
             new.set_title(lost.lstrip(", "))
-        label = "axial velocity along the wave, $v_z/c$" if speed else rf"axial velocity along the tube, $v_z$/({fastest:g} $d/t$)"
+        unit_of_speed = f"({fastest:g} $d/{unit(simulation, 't')}$)"
+        label = "axial velocity along the wave, $v_z/c$" if speed else f"axial velocity along the tube, $v_z$/{unit_of_speed}"
         scale = ScalarMappable(Normalize(-1.0, 1.0), DIVERGING)
         within = {-1: velocity.min(initial=0.0) >= -1, 1: velocity.max(initial=0.0) <= 1}
         extend: Literal["neither", "min", "max", "both"] = (
@@ -117,11 +120,6 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
             scale, ax=new, label=label, location="bottom", shrink=0.3, aspect=25, extend=extend
         )
     return new
-
-
-def _is_prescribed(simulation: Simulation) -> bool:
-    """Whether the wall moves as prescribed; otherwise it is elastic."""
-    return hasattr(simulation, "width")
 
 
 def _wall_radius(wall: Array, length: float) -> tuple[Array, Array]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 import os
 import sys
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +16,7 @@ from . import _core
 from ._core import Configuration, Table
 from ._given import positive, text_of, whole
 from ._keywords import flat
+from ._warnings import PeristalsisWarning, outside
 
 
 class PlannedRun(NamedTuple):
@@ -225,7 +227,14 @@ class Study:
         Returns
         -------
         {"complete", "time_up"}
-            Ctrl-C raises `KeyboardInterrupt` once every run is saved; call again to go on.
+            ``"complete"`` once no run is left, though some may have failed. Ctrl-C raises `KeyboardInterrupt` once every run
+            is saved; call again to go on.
+
+        Warns
+        -----
+        PeristalsisWarning
+            Where runs of the study have failed, in this call or before: how many, and how to see why. `counts` has their
+            number too, and what they would give is missing from `rows`.
 
         Raises
         ------
@@ -252,6 +261,12 @@ class Study:
         ending = self._study.work(os.fspath(self.store), number, seconds, watch if progress else None)
         if progress:
             print(file=sys.stderr)
+        counts = self.counts()
+        if failed := counts.get("failed", 0):
+            runs = sum(counts.values())
+            reasons = f"{self.name}-failed.csv, which Study.export writes, has the reasons"
+            text = f"{failed} of {runs} run{'s' * (runs > 1)} failed: {reasons}; or see: peristalsis study why {self.store} RUN"
+            warnings.warn(text, PeristalsisWarning, stacklevel=outside())
         return ending
 
     def rows(self) -> Table:
@@ -317,7 +332,7 @@ class Study:
         Returns
         -------
         list of str
-            The files.
+            The files; where runs failed, one of them has the reasons, ``NAME-failed.csv``.
 
         Raises
         ------

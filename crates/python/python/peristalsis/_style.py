@@ -19,8 +19,6 @@ except ImportError as _error:
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ._simulation import Simulation
-
 #: Millimetres in an inch.
 _INCH = 25.4
 #: One column of a journal, and two [mm].
@@ -93,11 +91,22 @@ STYLE: Any = {
 }
 
 
-class _StyledFigure(Figure):
+class StyledFigure(Figure):
     """A figure that is laid out, drawn and saved by the settings of `STYLE`, whatever they are outside.
 
     Matplotlib reads many settings as late as it draws: fonts of symbols, new ticks, dots per inch.
     """
+
+    #: Heights that were added for what stands around the axes [inch].
+    _rooms: dict[str, float]
+
+    def make_room(self, name: str, height: float) -> None:
+        """Makes the figure higher for something, in place of what was added for it before [inch]."""
+        rooms = self.__dict__.setdefault("_rooms", {})
+        more = height - rooms.get(name, 0.0)
+        rooms[name] = height
+        if more:
+            self.set_size_inches(self.get_figwidth(), self.get_figheight() + more)
 
     def draw(self, renderer: Any) -> None:
         with matplotlib.rc_context(STYLE):
@@ -122,7 +131,7 @@ def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
     Parameters
     ----------
     width, height : float
-        Size of the figure [mm].
+        Size of the figure [mm]; a legend that a function of this module puts below the axes adds to the height.
 
     Returns
     -------
@@ -137,7 +146,7 @@ def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
     """
     # pyplot chooses its backend with its first figure, and settings made then are lost at the end of a context.
     figure = pyplot.figure(
-        FigureClass=_StyledFigure, figsize=(width / _INCH, height / _INCH), dpi=STYLE["figure.dpi"], layout="constrained"
+        FigureClass=StyledFigure, figsize=(width / _INCH, height / _INCH), dpi=STYLE["figure.dpi"], layout="constrained"
     )
     with matplotlib.rc_context(STYLE):
         return figure.add_subplot()
@@ -147,16 +156,5 @@ def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
 def drawing(ax: Axes | None, width: float = SINGLE_COLUMN, height: float = 60.0) -> Iterator[Axes]:
     """Axes to draw into: those given, in the settings of their owner, or new ones in the style."""
     target = axes(width, height) if ax is None else ax
-    with matplotlib.rc_context(STYLE) if isinstance(target.figure, _StyledFigure) else nullcontext():
+    with matplotlib.rc_context(STYLE) if isinstance(target.figure, StyledFigure) else nullcontext():
         yield target
-
-
-def title(simulation: Simulation) -> str:
-    """The parameters of a run in one line."""
-    configuration = simulation.configuration
-    try:
-        control = f"$w$ = {simulation.width:g} $d$"
-    except AttributeError:
-        control = rf"$f^{{\mathrm{{P}}}}$ = {simulation.force_amplitude:g} $m\,d/t^2$"
-    density = rf"$\rho$ = {configuration.volume_fraction:.3f}"
-    return rf"{control},  $\dot{{\varepsilon}}$ = {simulation.strain_rate:g} $t^{{-1}}$,  {density},  $N$ = {configuration.grains}"

@@ -42,10 +42,11 @@ class KeyedWarning(NamedTuple):
 
 
 class PeristalsisWarning(UserWarning):
-    """A doubt about a simulation: its settings, or what was seen of it, such as a leak or overlaps of no solid grain.
+    """A doubt about a simulation: its settings, or what was seen of it, such as a leak or overlaps of no solid grain. Also
+    that runs of a study failed.
 
-    `Simulation.warnings` has the same list. ``warnings.simplefilter("ignore", peristalsis.PeristalsisWarning)`` silences
-    it.
+    `Simulation.warnings` has the list of a simulation. ``warnings.simplefilter("ignore", peristalsis.PeristalsisWarning)``
+    silences all.
 
     Examples
     --------

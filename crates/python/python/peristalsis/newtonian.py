@@ -52,7 +52,7 @@ def flow_rate_ratio(
     >>> float(flow_rate_ratio(0.0))
     1.0
     """
-    numeric(width)
+    numeric("width", width)
     widths = np.asarray(width, dtype=np.float64)
     ratios = [Newtonian.from_width(w, radius, pressure).flow_rate_ratio for w in widths.flat]
     return np.array(ratios, dtype=np.float64).reshape(widths.shape)
@@ -85,8 +85,8 @@ def field(
     >>> axial.shape
     (2, 2)
     """
-    numeric(radius)
-    numeric(position)
+    numeric("radius", radius)
+    numeric("position", position)
     r, x = np.broadcast_arrays(
         np.asarray(radius, dtype=np.float64), np.asarray(position, dtype=np.float64)
     )

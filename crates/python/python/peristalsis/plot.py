@@ -2,12 +2,14 @@
 
 Every function draws into `ax`, or into a new figure as wide as a journal's column, and answers the axes. New figures have
 the fonts, symbols and sizes of `STYLE`; axes of yours keep your settings. Colours are those of Okabe and Ito, which stay
-apart for colour-blind readers; red moves along the wave, blue against it.
+apart for colour-blind readers; red moves along the wave, blue against it. Beyond six curves marks or dashes tell apart what
+has the same colour. A legend that would hide something stands below the axes, for which a new figure grows.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -18,8 +20,12 @@ from . import newtonian
 from ._given import of_kind
 from ._simulation import Simulation
 from ._snapshot import snapshot
-from ._style import ALONG, COLOURS, DOUBLE_COLUMN, GREY, SINGLE_COLUMN, STYLE, axes, drawing, title
+from ._fit import set_legend, set_title
+from ._style import ALONG, COLOURS, DOUBLE_COLUMN, GREY, SINGLE_COLUMN, STYLE, axes, drawing
+from ._title import SEPARATOR, title, unit
 from .analysis import Collapse, CollapseResult, Survival
+
+from matplotlib.container import ErrorbarContainer
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -63,6 +69,10 @@ _COLUMNS = {
     "wall_shear": ("shear on the wall", r"\sigma", GREEN),
     "wall_axial_velocity": ("axial velocity of the wall", "v_z", ALONG),
 }
+#: Marks and dashes of curves, so that those of one colour differ.
+_MARKS, _DASHES = "osD^v<>", ("-", "--", "-.", ":")
+#: Height of the axes of `flow` with their names, without the legend [mm], and periods up to which each mean has its mark.
+_FLOW_HEIGHT, _MARKED = 50.0, 60
 #: Name that marks what is drawn once in axes, however often a function is called.
 _REFERENCE, _CURVE = "peristalsis: reference", "peristalsis: curve"
 
@@ -112,13 +122,15 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
     if not np.isfinite(ratio).any():
         raise ValueError("there is no flow rate to draw: run the simulation first, with a wave that moves")
     is_alone = ax is None and label is None
-    with drawing(ax) as new:
+    with drawing(ax, height=_FLOW_HEIGHT) as new:
         known = [np.asarray(drawn.get_xdata())[-1] for drawn in new.lines if drawn.get_gid() == _CURVE]
         colour = line.pop("color", COLOURS[len(known) % len(COLOURS)])
         faint = {"color": SKY, "label": "samples"} if is_alone else {"color": colour, "alpha": 0.4}
         new.plot(np.convolve(np.r_[0.0, period], [0.5, 0.5], "valid"), ratio, linewidth=0.6, **faint)
         middle, mean = _period_means(simulation, period, ratio)
-        style = {"linewidth": 1.1, "marker": "o" if len(mean) <= 60 else "", "markersize": 3.0, "markeredgewidth": 0.0}
+        style: dict[str, Any] = {"linewidth": 1.1, "markersize": 3.0, "markeredgewidth": 0.0}
+        if len(mean) <= _MARKED or len(known) >= len(COLOURS):
+            style |= {"marker": _mark(len(known)), "markevery": max(1, len(mean) // _MARKED * 4)}
         name = label or ("mean over a period" if is_alone else None)
         new.plot(middle, mean, **{**style, **line}, color=colour, label=name, gid=_CURVE)
         _flow_references(new, summary)
@@ -126,12 +138,18 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
             _late_mean(new, summary, period[-1])
             if summary["transition_time"] is not None:
                 place = float(np.interp(summary["transition_time"], series["time"], period))
-                new.axvline(place, color=VERMILLION, linewidth=0.9, label=rf"$\tau$ = {summary['transition_time']:.4g} $t$")
-            new.set_title(title(simulation))
+                words = rf"$\tau$ = {summary['transition_time']:.4g} ${unit(simulation, 't')}$ = {place:.1f} $T$"
+                new.axvline(place, color=VERMILLION, linewidth=0.9, label=words)
+            set_title(new, title(simulation), SEPARATOR)
         new.set(xlabel="time, $t/T$", ylabel=_RATIO, xlim=(0.0, math.ceil(max([period[-1] - 1e-6, *known]))))
         handles = sorted(new.get_legend_handles_labels()[0], key=lambda drawn: drawn.get_gid() != _CURVE)
-        new.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.23), ncols=2)
+        set_legend(new, handles, inside=False)
     return new
+
+
+def _mark(number: int) -> str:
+    """Mark of a curve by its number; with its colour it comes again after 42."""
+    return _MARKS[number % len(_MARKS)]
 
 
 def _period_means(simulation: Simulation, period: Array, ratio: Array) -> tuple[Array, Array]:
@@ -225,11 +243,10 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
     if not np.isfinite(table[column]).any():
         long = "some periods in its late part" if column.endswith("_error") else "a period at least"
         raise ValueError(f"there is no {column} to draw yet: run the simulation longer, for {long}")
-    unit = table.units[column]
     words, symbol, colour = _COLUMNS.get(column, (column.replace("_", " "), "", BLUE))
     speed = simulation.strain_rate * simulation.configuration["tube.wavelength"]
-    of_wave = {"d/t": (1.0 / speed, "c"), "m d^2/t^2": (1.0 / speed**2, "m c^2")} if speed else {}
-    scale, unit = of_wave.get(unit, (1.0, unit))
+    of_wave = {"d/t": (1.0 / speed, "c"), "m d^2/t^2": (1.0 / speed**2, r"m\,c^2")} if speed else {}
+    scale, name = of_wave.get(table.units[column], (1.0, unit(simulation, table.units[column])))
     place = np.concatenate([table["position"][-1:] - 1.0, table["position"], table["position"][:1] + 1.0])
 
     def closed(name: str) -> Array:
@@ -239,28 +256,35 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
     with drawing(ax) as new:
         known = sum(drawn.get_gid() == _CURVE for drawn in new.lines)
         colour = line.pop("color", colour if not known else COLOURS[known % len(COLOURS)])
-        new.plot(place, closed(column), color=colour, label=label, gid=_CURVE, **line)
+        new.plot(place, closed(column), color=colour, label=label, gid=_CURVE, **_dashes(known, line))
         if f"{column}_error" in table:
             error = np.nan_to_num(closed(f"{column}_error"))
             new.fill_between(place, closed(column) - error, closed(column) + error, color=colour, alpha=0.25, linewidth=0)
         if column not in ("radius", "least_radius", "largest_radius"):
             _level(new, 0.0, None, color=GREY, linewidth=0.4, zorder=0.5)
-        new.set(xlabel=_PHASE, ylabel=_quantity(words, symbol, unit), xlim=(0.0, 1.0))
+        new.set(xlabel=_PHASE, ylabel=_quantity(words, symbol, name), xlim=(0.0, 1.0))
         if label is not None:
-            new.legend()
+            set_legend(new)
     return new
+
+
+def _dashes(number: int, line: Mapping[str, Any]) -> dict[str, Any]:
+    """Keywords of a line, with dashes by its number that tell it from one of the same colour."""
+    dashes = _DASHES[number // len(COLOURS) % len(_DASHES)]
+    return dict(line) if {"linestyle", "ls"} & line.keys() else {**line, "linestyle": dashes}
 
 
 def _quantity(words: str, symbol: str, unit: str) -> str:
     """Label of an axis that bears plain numbers: words, and the symbol over its unit."""
     if not symbol:
-        return words if unit == "1" else f"{words} [{unit}]"
-    unit = unit.replace(" ", r"\,")
+        return words if unit == "1" else f"{words} [${unit}$]"
     if unit == "1":
         return f"{words}, ${symbol}$"
     if unit.startswith("1/"):
         return rf"{words}, ${symbol}\,{unit[2:]}$"
-    return f"{words}, ${symbol}/{unit if len(unit) == 1 else f'({unit})'}$"
+    if unit == "k/d":
+        return rf"{words}, ${symbol}\,d/k$"
+    return f"{words}, ${symbol}/{unit if re.fullmatch(r'[A-Za-z]+', unit) else f'({unit})'}$"
 
 
 def stationary_flow(
@@ -294,19 +318,30 @@ def stationary_flow(
     -------
     matplotlib.axes.Axes
 
+    Raises
+    ------
+    ValueError
+        Where no point has a width and a ratio.
+
     Examples
     --------
     >>> from peristalsis import plot
     >>> plot.stationary_flow([2.4, 2.6], [0.9, 0.4], [0.01, 0.02]).get_xlabel()
     'width of the bottleneck, $w/d$'
     """
+    places, values = (np.asarray(np.ma.array(column, float).filled(np.nan), float) for column in (width, ratio))
+    if places.shape != values.shape:
+        raise ValueError(f"each point has a width and a ratio: there are {places.size} widths, but {values.size} ratios")
+    if not (np.isfinite(places) & np.isfinite(values)).any():
+        raise ValueError("there are no points to draw: give the width and J/Jmax of one run at least")
     with drawing(ax) as new:
-        new.errorbar(width, ratio, yerr=error, label=label, **{"fmt": "o", **points})
+        known = sum(isinstance(drawn, ErrorbarContainer) for drawn in new.containers)
+        new.errorbar(width, ratio, yerr=error, label=label, **{"fmt": _mark(known), **points})
         if radius is not None:
             _newtonian_curve(new, radius)
         new.set(xlabel=_PARAMETERS["width"], ylabel=_RATIO)
         if new.get_legend_handles_labels()[0]:
-            new.legend()
+            set_legend(new)
     return new
 
 
@@ -365,7 +400,7 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
         if radius is not None and loop.parameter == "width":
             _newtonian_curve(new, radius)
         new.set(xlabel=_PARAMETERS.get(loop.parameter, loop.parameter), ylabel=_RATIO)
-        new.legend()
+        set_legend(new)
     return new
 
 
@@ -408,14 +443,15 @@ def survival(curve: Survival, ax: Axes | None = None, *, label: str | None = Non
     lower = np.array([1.0, *(level.interval_68.lower for level in levels)])
     upper = np.array([1.0, *(level.interval_68.upper for level in levels)])
     with drawing(ax) as new:
+        known = sum(drawn.get_gid() == _CURVE for drawn in new.lines)
         latest = max([time[-1], *(np.asarray(drawn.get_xdata())[-1] for drawn in new.lines if drawn.get_gid() == _CURVE)])
-        (drawn,) = new.step(time, np.append(value, value[-1]), where="post", label=label, gid=_CURVE, **line)
+        (drawn,) = new.step(time, np.append(value, value[-1]), where="post", label=label, gid=_CURVE, **_dashes(known, line))
         bounds = np.append(lower, lower[-1]), np.append(upper, upper[-1])
         new.fill_between(time, *bounds, step="post", color=drawn.get_color(), alpha=0.25, linewidth=0)
         new.set(xlabel="time, $t$", ylabel="runs without a transition, $S(t)$", ylim=(0.0, 1.05))
         new.set_xlim(0.0, latest)
         if label is not None:
-            new.legend()
+            set_legend(new)
     return new
 
 
@@ -459,8 +495,8 @@ def collapse(
     with drawing(ax) as new:
         for place, ((_, x, y, error), label) in enumerate(zip(what.scaled(chosen), labels, strict=True)):
             colour = COLOURS[place % len(COLOURS)]
-            new.errorbar(x, y, yerr=error, fmt="osD^v<>"[place % 7], color=colour, label=label)
+            new.errorbar(x, y, yerr=error, fmt=_mark(place), color=colour, label=label)
         new.set_title(f"$S$ = {quality.quality:.2f}, overlap {quality.overlap:.0%}")
         new.set(xlabel="scaled abscissa", ylabel="scaled ordinate")
-        new.legend()
+        set_legend(new)
     return new

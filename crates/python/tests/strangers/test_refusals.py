@@ -52,7 +52,7 @@ def tight() -> Simulation:
         (lambda sim: plot.snapshot("x"), TypeError, "simulation is a peristalsis.Simulation, not 'x'"),
         (lambda sim: plot.survival([1.0]), TypeError, "curve is a peristalsis.analysis.Survival"),
         (lambda sim: plot.collapse(3, [1.0]), TypeError, "what is a peristalsis.analysis.Collapse"),
-        (lambda sim: plot.profile(sim), ValueError, "run the simulation first"),
+        (lambda sim: plot.profile(sim), ValueError, "run the simulation longer"),
         (lambda sim: Simulation("frictionless"), TypeError, "configuration is a peristalsis.Configuration"),
         (lambda sim: analysis.Collapse([], "finite"), ValueError, 'scaling is "finite_size", "critical_line"'),
         (lambda sim: analysis.Collapse([], {"known": [1]}), ValueError, '{"critical_known": [x_c, ...]}'),

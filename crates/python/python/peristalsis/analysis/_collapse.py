@@ -12,7 +12,7 @@ from .. import _core
 from .._arrays import Array
 from .._core import AnalysisError
 from .._given import alike, number, of_kind, whole
-from ._columns import Numbers, columns, pair, result
+from ._columns import Numbers, columns, pair, reals, refuse, result
 from ._results import CollapseEstimate, CollapseQuality, Interval, JointTest, Uncertain
 
 #: Scalings by name.
@@ -92,6 +92,14 @@ class Collapse:
     least_overlap : float
         Least part of the points that must be compared. At 0 a search may win by pulling the curves apart.
 
+    Raises
+    ------
+    AnalysisError
+        Below 2 curves, for a curve without points, a number that is not finite, an error that is not positive, and under a
+        scaling by name a p that is not; under the critical scalings also for a y that is not positive.
+    ValueError
+        For columns of unequal length, or another scaling.
+
     Examples
     --------
     y = p x collapses as y/p^a at a = 1:
@@ -112,16 +120,38 @@ class Collapse:
         *,
         least_overlap: float = 0.5,
     ) -> None:
-        self.curves: list[tuple[float, Array, Array, Array]] = []
-        for parameter, *given in curves:
-            x, y, error = columns(*given)
-            self.curves.append((float(parameter), x, y, error))
         self.scaling: Any = dict(scaling) if isinstance(scaling, Mapping) else scaling
         is_known = list(scaling) == ["critical_known"] if isinstance(scaling, Mapping) else scaling in _SCALINGS
         if not (callable(scaling) or is_known):
             names = ", ".join(f'"{name}"' for name in _SCALINGS)
             raise ValueError(f'scaling is {names}, {{"critical_known": [x_c, ...]}} or a function, not {scaling!r}')
-        self.least_overlap: float = float(least_overlap)
+        self.least_overlap: float = number("least_overlap", least_overlap)
+        if not 0.0 <= self.least_overlap <= 1.0:
+            raise ValueError(f"least_overlap is a part of the points, from 0 to 1, not {self.least_overlap:g}")
+        if isinstance(scaling, Mapping):
+            reals("critical_known", scaling["critical_known"])
+        self.curves: list[tuple[float, Array, Array, Array]] = [
+            self._curve(f"curve {place}", curve) for place, curve in enumerate(curves)
+        ]
+        if len(self.curves) < 2:
+            raise AnalysisError(f"a collapse compares 2 curves or more, not {len(self.curves)}")
+
+    def _curve(self, name: str, given: Sequence[Any]) -> tuple[float, Array, Array, Array]:
+        """A curve whose numbers the scaling can take."""
+        if len(given) != 4:
+            raise ValueError(f"{name} is (p, x, y, error), not {len(given)} entries")
+        p = float(given[0])
+        has_power = not callable(self.scaling)
+        if not np.isfinite(p) or (has_power and p <= 0.0):
+            raise AnalysisError(f"{name}: its p is {p:g}, but must be {'positive and ' if has_power else ''}finite")
+        has_logarithm = has_power and self.scaling != "finite_size"
+        try:
+            x, y, error = columns(("y", "error") if has_logarithm else ("error",), x=given[1], y=given[2], error=given[3])
+        except (TypeError, ValueError) as reason:
+            raise type(reason)(f"{name}: {reason}") from None
+        if not len(x):
+            raise AnalysisError(f"{name} has no points")
+        return p, x, y, error
 
     def fit(
         self,
@@ -168,8 +198,9 @@ class Collapse:
         Raises
         ------
         AnalysisError
-            Where the scaling has another number of parameters, no start finds enough overlap, or the data are not
-            finite.
+            Where the scaling has another number of parameters, no start finds enough overlap, or a number given is not
+            finite; for a step or the error of a known parameter that is not positive, and where a correction meets a p that
+            is not.
 
         Examples
         --------
@@ -186,10 +217,20 @@ class Collapse:
             correction = -1.0 if callable(self.scaling) or self.scaling == "finite_size" else 1.0
         if leave_one_out and len(known):
             raise ValueError("leave_one_out repeats the search without what is known: ask for one of the two")
+        if leave_one_out and len(self.curves) < 3:
+            raise AnalysisError(f"leave_one_out needs 3 curves or more, not {len(self.curves)}")
+        if correction is not None:
+            correction = float(correction)
+            if not np.isfinite(correction):
+                raise AnalysisError(f"correction is {correction:g}, which is not a finite number")
+            for place, (p, *_) in enumerate(self.curves):
+                if p <= 0.0:
+                    reason = "but must be positive for p^c: correction=None leaves the correction out"
+                    raise AnalysisError(f"curve {place}: its p is {p:g}, {reason}")
         search = self._search(start, steps, known) | {
-            "starts": whole("starts", starts, 0),
+            "starts": whole("starts", starts, 1),
             "seed": whole("seed", seed, 0, 2**64 - 1),
-            "correction": None if correction is None else float(correction),
+            "correction": correction,
             "leave_one_out": bool(leave_one_out),
         }
         found, left_out = _core.fit_collapse(self.curves, self.scaling, search)
@@ -207,15 +248,25 @@ class Collapse:
         )
 
     def _search(self, start: Sequence[float], steps: Sequence[float], known: Places) -> dict[str, Any]:
+        begin, reach = reals("start", start), reals("steps", steps)
+        refuse("steps", reach, reach <= 0.0, "but must be positive")
+        if len(reach) != len(begin):
+            raise AnalysisError(f"steps has a value for each of {len(begin)} parameters, not {len(reach)}")
+        if len(known) > len(begin):
+            raise AnalysisError(f"known has values for {len(begin)} parameters, not {len(known)}")
+        given = {place: pair(f"known[{place}]", value) for place, value in enumerate(known) if value is not None}
+        for place, (_, error) in given.items():
+            if error == 0.0:
+                raise AnalysisError(f"known[{place}] counts as a point, and needs an error above 0: (value, error)")
         return {
-            "start": [float(value) for value in start],
-            "steps": [float(value) for value in steps],
+            "start": begin.tolist(),
+            "steps": reach.tolist(),
             "starts": 1,
             "seed": 0,
             "least_overlap": self.least_overlap,
             "correction": None,
             "leave_one_out": False,
-            "known": [(place, *pair(value)) for place, value in enumerate(known) if value is not None],
+            "known": [(place, *values) for place, values in given.items()],
         }
 
     def joint_test(
@@ -281,7 +332,7 @@ class Collapse:
         Raises
         ------
         AnalysisError
-            Where the scaling has another number of parameters, or the data are not finite.
+            Where the scaling has another number of parameters, one is not finite, or no curves overlap.
 
         Examples
         --------
@@ -294,7 +345,7 @@ class Collapse:
         >>> found.quality < 0.1, found.is_connected, found.compared, found.overlap > 0.5
         (True, True, 51, True)
         """
-        quality, _ = _core.apply_collapse(self.curves, self.scaling, [float(p) for p in parameters])
+        quality, _ = _core.apply_collapse(self.curves, self.scaling, reals("parameters", parameters).tolist())
         return result(CollapseQuality, quality)
 
     def scaled(self, parameters: Sequence[float]) -> list[tuple[float, Array, Array, Array]]:
@@ -313,7 +364,7 @@ class Collapse:
         Raises
         ------
         AnalysisError
-            Where the scaling has another number of parameters, or the data are not finite.
+            Where the scaling has another number of parameters, one is not finite, or no curves overlap.
 
         Examples
         --------
@@ -326,7 +377,7 @@ class Collapse:
         >>> round(float(x[-1]), 2), round(float(y[10]), 2)
         (2.0, 0.5)
         """
-        _, scaled = _core.apply_collapse(self.curves, self.scaling, [float(p) for p in parameters])
+        _, scaled = _core.apply_collapse(self.curves, self.scaling, reals("parameters", parameters).tolist())
 
         def column(points: list[dict[str, float]], name: str) -> Array:
             return np.array([point[name] for point in points], dtype=np.float64)

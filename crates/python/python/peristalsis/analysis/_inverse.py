@@ -43,7 +43,7 @@ def fit_inverse_line(width: Numbers, value: Numbers, error: Numbers) -> InverseF
     >>> round(fit.critical_width.value, 6), round(fit.linear.value, 6), fit.quadratic, fit.degrees_of_freedom
     (3.0, 0.5, None, 1)
     """
-    return result(InverseFit, _core.fit_inverse_line(*columns(width, value, error)))
+    return result(InverseFit, _core.fit_inverse_line(*columns(("value", "error"), width=width, value=value, error=error)))
 
 
 def fit_inverse_parabola(width: Numbers, value: Numbers, error: Numbers) -> InverseFit:
@@ -77,4 +77,4 @@ def fit_inverse_parabola(width: Numbers, value: Numbers, error: Numbers) -> Inve
     >>> round(fit.critical_width.value, 6), round(fit.linear.value, 6), round(fit.quadratic.value, 6)
     (3.0, 1.0, 1.0)
     """
-    return result(InverseFit, _core.fit_inverse_parabola(*columns(width, value, error)))
+    return result(InverseFit, _core.fit_inverse_parabola(*columns(("value", "error"), width=width, value=value, error=error)))

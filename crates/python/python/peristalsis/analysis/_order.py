@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy.typing as npt
 
 from .. import _core
-from ._columns import Numbers, columns, pair, reals, resampling, result, runs
+from .._arrays import Array
+from ._columns import Numbers, columns, outcomes, pair, reals, resampling, result
 from ._results import DipTest, FractionCrossing, Hysteresis, Jump, TwoPeaks, Uncertain
 
 
@@ -43,7 +44,7 @@ def fraction_crossing(width: Numbers, jammed: npt.ArrayLike) -> FractionCrossing
     >>> round(found.last_all, 2), round(found.first_none, 2), found.is_separated
     (2.65, 2.7, True)
     """
-    return result(FractionCrossing, _core.fraction_crossing(runs(width, jammed)))
+    return result(FractionCrossing, _core.fraction_crossing(outcomes("width", width, "jammed", jammed)))
 
 
 def hysteresis(
@@ -88,7 +89,8 @@ def hysteresis(
     >>> round(loop.loop_width.value, 2)
     0.15
     """
-    rest, jammed = runs(rest_width, rest_jammed), runs(jammed_width, jammed_jammed)
+    rest = outcomes("rest_width", rest_width, "rest_jammed", rest_jammed)
+    jammed = outcomes("jammed_width", jammed_width, "jammed_jammed", jammed_jammed)
     return result(Hysteresis, _core.hysteresis(rest, jammed))
 
 
@@ -128,8 +130,16 @@ def jump_height(
     >>> round(jump.upper.value, 3), round(jump.height.value, 3)
     (0.8, 0.6)
     """
-    above, below = columns(*upper), columns(*lower)
-    return result(Jump, _core.jump_height(above, below, pair(critical_width)))
+    above, below = _branch("upper", upper), _branch("lower", lower)
+    return result(Jump, _core.jump_height(above, below, pair("critical_width", critical_width)))
+
+
+def _branch(name: str, given: tuple[Numbers, Numbers, Numbers]) -> list[Array]:
+    """The columns of a branch."""
+    names = [f"{name} {column}" for column in ("widths", "values", "errors")]
+    if len(given) != len(names):
+        raise ValueError(f"{name} is three columns, widths, values and errors, not {len(given)}")
+    return columns(names[2:], **dict(zip(names, given, strict=True)))
 
 
 def dip_test(values: Numbers, *, resamples: int = 1000, seed: int = 0) -> DipTest:
@@ -168,7 +178,7 @@ def dip_test(values: Numbers, *, resamples: int = 1000, seed: int = 0) -> DipTes
     >>> analysis.dip_test(apart, resamples=200).probability < 0.01
     True
     """
-    return result(DipTest, _core.dip_test(reals(values), *resampling(resamples, seed)))
+    return result(DipTest, _core.dip_test(reals("values", values), *resampling(resamples, seed)))
 
 
 def two_peaks(values: Numbers) -> TwoPeaks:
@@ -200,4 +210,4 @@ def two_peaks(values: Numbers) -> TwoPeaks:
     >>> round(peaks.lower.mean, 2), peaks.separation > 2
     (0.5, True)
     """
-    return result(TwoPeaks, _core.two_peaks(reals(values)))
+    return result(TwoPeaks, _core.two_peaks(reals("values", values)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .. import _core
-from ._columns import Numbers, columns, law_of, pair, reals, result
+from ._columns import Numbers, columns, law_of, pair, reals, refuse, result
 from ._results import CurveFit, LawFit, LineFit, NearestFit, ScatteredLine, Uncertain
 
 if TYPE_CHECKING:
@@ -61,8 +61,8 @@ def fit_law(
     >>> round(fit.critical_width.value, 3), round(fit.exponent.value, 3), fit.degrees_of_freedom
     (2.8, 1.5, 5)
     """
-    known = None if critical_width is None else pair(critical_width)
-    widths, values, errors = columns(width, value, error)
+    known = None if critical_width is None else pair("critical_width", critical_width)
+    widths, values, errors = columns(("value", "error"), width=width, value=value, error=error)
     return result(LawFit, _core.fit_law(law_of(law), widths, values, errors, known))
 
 
@@ -106,8 +106,8 @@ def fit_law_to_nearest(
     >>> [(one.widths, round(one.fit.exponent.value, 2)) for one in fits]
     [(4, 1.18), (5, 1.25), (6, 1.34)]
     """
-    known = None if critical_width is None else pair(critical_width)
-    widths, values, errors = columns(width, value, error)
+    known = None if critical_width is None else pair("critical_width", critical_width)
+    widths, values, errors = columns(("value", "error"), width=width, value=value, error=error)
     answers = _core.fit_law_to_nearest(law_of(law), widths, values, errors, known)
     return [result(NearestFit, answer) for answer in answers]
 
@@ -139,7 +139,7 @@ def fit_line(x: Numbers, y: Numbers, error: Numbers) -> LineFit:
     >>> round(fit.intercept.value, 6), round(fit.slope.value, 6), fit.degrees_of_freedom
     (1.0, 2.0, 1)
     """
-    return result(LineFit, _core.fit_line(*columns(x, y, error)))
+    return result(LineFit, _core.fit_line(*columns(("error",), x=x, y=y, error=error)))
 
 
 def fit_parabola(x: Numbers, y: Numbers, error: Numbers) -> CurveFit:
@@ -169,7 +169,7 @@ def fit_parabola(x: Numbers, y: Numbers, error: Numbers) -> CurveFit:
     >>> round(fit.quadratic.value, 6), fit.linearity < 0.01
     (1.0, True)
     """
-    return result(CurveFit, _core.fit_parabola(*columns(x, y, error)))
+    return result(CurveFit, _core.fit_parabola(*columns(("error",), x=x, y=y, error=error)))
 
 
 def fit_line_to_scatter(x: Numbers, y: Numbers, error: Numbers | None = None) -> ScatteredLine:
@@ -209,8 +209,9 @@ def fit_line_to_scatter(x: Numbers, y: Numbers, error: Numbers | None = None) ->
     >>> print(fit.line.slope)
     0.96 +- 0.057
     """
-    known = [0.0] * len(reals(y)) if error is None else error
-    return result(ScatteredLine, _core.fit_line_to_scatter(*columns(x, y, known)))
+    x, y, errors = columns(x=x, y=y, error=[0.0] * len(reals("y", y)) if error is None else error)
+    refuse("error", errors, errors < 0.0, "but must not be negative")
+    return result(ScatteredLine, _core.fit_line_to_scatter(x, y, errors))
 
 
 def power_exponent(x: Numbers, y: Numbers, error: Numbers) -> LineFit:
@@ -239,4 +240,4 @@ def power_exponent(x: Numbers, y: Numbers, error: Numbers) -> LineFit:
     >>> round(analysis.power_exponent([1, 2, 4], [1, 8, 64], [0.1, 0.8, 6.4]).slope.value, 6)
     3.0
     """
-    return result(LineFit, _core.power_exponent(*columns(x, y, error)))
+    return result(LineFit, _core.power_exponent(*columns(("x", "y", "error"), x=x, y=y, error=error)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from .. import _core
+from .._arrays import Array
 from .._given import whole
 from ._columns import Numbers, columns, reals, resampling, result
 from ._results import AutocorrelationTime, Estimate, MomentPeak, Moments, SecondMoment, Stationarity, StationaryMean
@@ -42,7 +43,7 @@ def mean_with_error(series: Numbers) -> Estimate:
     >>> mean.mean, mean.converged
     (2.0, True)
     """
-    return result(Estimate, _core.mean_with_error(reals(series)))
+    return result(Estimate, _core.mean_with_error(reals("series", series)))
 
 
 def autocorrelation_time(series: Numbers) -> AutocorrelationTime:
@@ -79,7 +80,7 @@ def autocorrelation_time(series: Numbers) -> AutocorrelationTime:
     >>> found.converged, abs(found.time - 0.5) < 3 * found.error
     (True, True)
     """
-    return result(AutocorrelationTime, _core.autocorrelation_time(reals(series)))
+    return result(AutocorrelationTime, _core.autocorrelation_time(reals("series", series)))
 
 
 def stationary_mean(series: Numbers) -> StationaryMean:
@@ -109,7 +110,7 @@ def stationary_mean(series: Numbers) -> StationaryMean:
     >>> found.discarded >= 64, round(found.estimate.mean, 1)
     (True, 1.0)
     """
-    return result(StationaryMean, _core.stationary_mean(reals(series)))
+    return result(StationaryMean, _core.stationary_mean(reals("series", series)))
 
 
 def stationarity(series: Numbers) -> Stationarity:
@@ -138,7 +139,7 @@ def stationarity(series: Numbers) -> Stationarity:
     >>> abs(halves.score) < 3
     True
     """
-    return result(Stationarity, _core.stationarity(reals(series)))
+    return result(Stationarity, _core.stationarity(reals("series", series)))
 
 
 def ensemble_moments(replicates: Iterable[Numbers]) -> list[Moments]:
@@ -168,7 +169,7 @@ def ensemble_moments(replicates: Iterable[Numbers]) -> list[Moments]:
     >>> moments.mean, moments.variance
     (2.0, 1.0)
     """
-    rows = columns(*replicates)
+    rows = columns(**{f"replicate {number}": series for number, series in enumerate(replicates)})
     return [result(Moments, answer) for answer in _core.ensemble_moments(rows)]
 
 
@@ -201,7 +202,7 @@ def second_moment(runs: Iterable[Numbers], *, held: int | None = None) -> list[S
     >>> moment.mean, moment.variance, moment.runs
     (0.5, 0.25, 3)
     """
-    answers = _core.second_moment([reals(run) for run in runs], _held(held))
+    answers = _core.second_moment(_rows(runs), _held(held))
     return [result(SecondMoment, answer) for answer in answers]
 
 
@@ -239,8 +240,12 @@ def second_moment_peak(
     >>> peak.index.value, round(peak.value.value, 3)
     (1.0, 0.182)
     """
-    rows = [reals(run) for run in runs]
+    rows = _rows(runs)
     return result(MomentPeak, _core.second_moment_peak(rows, _held(held), *resampling(resamples, seed)))
+
+
+def _rows(runs: Iterable[Numbers]) -> list[Array]:
+    return [reals(f"run {number}", run) for number, run in enumerate(runs)]
 
 
 def _held(samples: int | None) -> int | None:

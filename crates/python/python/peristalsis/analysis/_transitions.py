@@ -81,7 +81,7 @@ class Survival:
     watched: float
 
     def __init__(self, time: Numbers, observed: npt.ArrayLike | None = None) -> None:
-        self._runs = runs(time, observed)
+        self._runs = runs(time, observed, at_once=True)
         answer = _core.survival(self._runs)
         self.steps = tuple(result(SurvivalStep, step) for step in answer["steps"])
         self.runs = answer["runs"]
@@ -107,7 +107,7 @@ class Survival:
         >>> analysis.Survival([1.0, 2.0]).at([0.0, 1.5]).tolist()
         [1.0, 0.5]
         """
-        numeric(time, AnalysisError)
+        numeric("time", time, AnalysisError)
         asked = np.asarray(time, dtype=np.float64)
         times = np.array([step.time for step in self.steps])
         levels = np.array([1.0, *(step.survival.value for step in self.steps)])
@@ -196,7 +196,7 @@ def transition_time(
     >>> analysis.transition_time([0.1, 0.1, 0.9, 0.9, 0.9, 0.9], period_duration=10.0)
     TransitionTime(time=20.0, observed=True)
     """
-    return TransitionTime(*_core.transition_time(reals(averages), direction, threshold, period_duration))
+    return TransitionTime(*_core.transition_time(reals("averages", averages), direction, threshold, period_duration))
 
 
 def restricted_moments(
