@@ -49,6 +49,14 @@ def test_an_open_tube_with_a_wave_that_stands_is_drawn_as_it_is() -> None:
     plt.close(axes.figure)
 
 
+def test_a_wall_without_spheres_is_drawn() -> None:
+    smooth = Simulation.preset("frictionless", waves=2, width=2.6, overrides={"tube.arrangement": "smooth"})
+    axes = plot.snapshot(smooth)
+    wall = [np.abs(line.get_ydata()) for line in axes.lines]
+    assert [round(float(2 * radius.min()), 3) for radius in wall] == [2.6, 2.6]
+    plt.close(axes.figure)
+
+
 @pytest.mark.parametrize(
     ("preset", "settings", "title"),
     [

@@ -73,10 +73,10 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
 
     grains, diameters, wall = simulation.positions, simulation.diameters, simulation.wall_positions
     from_axis = np.hypot(grains[:, 0], grains[:, 1])
-    rings, radii = _wall_radius(wall, length)
+    radii = simulation.wall_radius()
     # An open tube has no images beyond its ends.
     repeats = np.inf if simulation.configuration["tube"].get("ends") == "open" else length
-    escaped = from_axis > np.interp(grains[:, 2], rings, radii, period=length) + 0.5 * diameters
+    escaped = from_axis > simulation.wall_radius(grains[:, 2]) + 0.5 * diameters
     reach = 1.06 * (radii.max() + (0.0 if is_prescribed(simulation) else 0.5))
     shown = from_axis < _REACH * radii.mean()
     if (escaped & shown).any():
@@ -89,7 +89,7 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     with drawing(ax, DOUBLE_COLUMN, 165.0 * 2 * reach / (end - begin) + 30.0) as new:
         if is_prescribed(simulation):
             place = np.linspace(begin, end, 400)
-            outline = np.interp(along(place) % length, rings, radii, period=length)
+            outline = simulation.wall_radius(along(place))
             for side in (1.0, -1.0):
                 new.plot(place, side * outline, color=GREY, linewidth=1.0)
         else:
@@ -120,15 +120,6 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
             scale, ax=new, label=label, location="bottom", shrink=0.3, aspect=25, extend=extend
         )
     return new
-
-
-def _wall_radius(wall: Array, length: float) -> tuple[Array, Array]:
-    """Places along the tube and the mean distance of the wall's spheres from the axis there, in slices of half a sphere."""
-    number = max(1, round(2.0 * length))
-    slices = np.minimum((wall[:, 2] / length * number).astype(int), number - 1)
-    count = np.bincount(slices, minlength=number)
-    mean = [np.bincount(slices, weights, number)[count > 0] / count[count > 0] for weights in (wall[:, 2], np.hypot(*wall.T[:2]))]
-    return mean[0], mean[1]
 
 
 def _discs(ax: Axes, x: Array, y: Array, diameter: Array, length: float, **look: Any) -> None:
