@@ -18,6 +18,7 @@ mod run;
 mod schema;
 mod study;
 mod table;
+mod title;
 mod value;
 
 use pyo3::prelude::*;
@@ -73,6 +74,8 @@ mod _core {
     use crate::study::{Study, store_counts, store_export, store_rows};
     #[pymodule_export]
     use crate::table::Table;
+    #[pymodule_export]
+    use crate::title::title;
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "the name in Python")]

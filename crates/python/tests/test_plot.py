@@ -60,24 +60,24 @@ def test_a_wall_without_spheres_is_drawn() -> None:
 @pytest.mark.parametrize(
     ("preset", "settings", "title"),
     [
-        ("frictionless", {}, r"$w$ = 2.75 $d$,  $\dot{\varepsilon}$ = 0.05 $(k/m)^{1/2}$,  $\rho$ = 0.152,  $N$ = 41"),
+        ("frictionless", {}, r"$w$ = 2.75 $d$,  $\dot{ε}$ = 0.05 ($k$/$m$)$^{\mathrm{1/2}}$,  $ρ$ = 0.152,  $N$ = 41"),
         (
             "sand-pump",
             {"initial_state": "jammed", "body_force": 0.0005},
-            r"$w$ = 5 $d$,  $\dot{\varepsilon}$ = 0.000962 $(k/m)^{1/2}$,  $\rho$ = 0.150,  $N$ = 1122,  start: jammed,  "
-            r"$\mu_{\mathrm{s}}$ = 0.5,  $g$ = (0, −0.000181, −0.0005) $kd/m$",
+            r"$w$ = 5 $d$,  $\dot{ε}$ = 0.000962 ($k$/$m$)$^{\mathrm{1/2}}$,  $ρ$ = 0.150,  $N$ = 1122,  start: jammed,  "
+            r"$μ_{\mathrm{s}}$ = 0.5,  $g$ = (0, −0.000181, −0.0005) $kd$/$m$",
         ),
         (
             "frictional",
             {"static_friction": 0.4},
-            r"$f^{\mathrm{P}}$ = 0.004 $Yd^2$,  $\dot{\varepsilon}$ = 0.00401 $t^{\ast-1}$,  $n$ = 0.710 $d^{-3}$,  $N$ = 1093,  "
-            r"start: jammed,  $\mu_{\mathrm{s}}$ = 0.4",
+            r"$f^{\mathrm{P}}$ = 0.004 $Yd^{\mathrm{2}}$,  $\dot{ε}$ = 0.00401 $t^{\mathrm{*−1}}$,  $n$ = 0.710 $d^{\mathrm{−3}}$,  $N$ = 1093,  "
+            r"start: jammed,  $μ_{\mathrm{s}}$ = 0.4",
         ),
         (
             "frictionless",
             {"waveform": "bolus", "direction": "backward", "arrangement": "smooth", "gravity": [0, 0, -0.002], "body_force": 5e-4},
-            r"$w$ = 2.75 $d$,  $\dot{\varepsilon}$ = 0.05 $(k/m)^{1/2}$,  $\rho$ = 0.152,  $N$ = 41,  wave: bolus,  "
-            "direction: backward,  wall: smooth,  $g$ = −0.0015 $kd/m$",
+            r"$w$ = 2.75 $d$,  $\dot{ε}$ = 0.05 ($k$/$m$)$^{\mathrm{1/2}}$,  $ρ$ = 0.152,  $N$ = 41,  wave: bolus,  "
+            "direction: backward,  wall: smooth,  $g$ = −0.0015 $kd$/$m$",
         ),
     ],
 )
@@ -94,11 +94,8 @@ def test_a_title_has_what_was_driven_and_breaks_between_its_parts() -> None:
     small.width = 2.7
     axes = plot.flow(small)
     first, second = axes.get_title().split("\n")
-    assert first.startswith(r"$w$ = 2.6 to 2.8 $d$,  $\dot{\varepsilon}$ = 0.1 to 0.05 $(k/m)^{1/2}$,") and not first.endswith(",")
-    assert second == r"wave: bolus,  $\mu_{\mathrm{s}}$ = 0.3"
-    assert [_title.short(value) for value in (9.61782e-4, 9.617819417918985e-4, -2.5, 1e-7, 0.0)] == [
-        "0.000961782", "0.000962", "−2.5", "0.0000001", "0",
-    ]  # fmt: skip
+    assert first.startswith(r"$w$ = 2.6 to 2.8 $d$,  $\dot{ε}$ = 0.1 to 0.05 ($k$/$m$)$^{\mathrm{1/2}}$,") and not first.endswith(",")
+    assert second == r"wave: bolus,  $μ_{\mathrm{s}}$ = 0.3"
     assert plot.profile(small, "wall_pressure").get_ylabel() == r"pressure on the wall, $p\,d/k$"
 
 

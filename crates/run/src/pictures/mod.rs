@@ -79,8 +79,8 @@ pub(crate) fn draw_all(
     Ok(drawings)
 }
 
-/// The parameters of a run, in markup.
-fn title(configuration: &Configuration) -> String {
+/// The parameters of a run as the title of its figures has them, in the markup of [`letters`](peristalsis_figures::letters).
+pub fn title(configuration: &Configuration) -> String {
     let value = |parameter, constant| scheduled_value(configuration, parameter, constant);
     let (control, density) = match configuration.drive.control {
         Control::Strain { width } => {
