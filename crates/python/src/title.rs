@@ -44,9 +44,11 @@ fn symbols(letters: &[Letter], italic: bool) -> String {
     let mut text = String::new();
     let mut characters = letters.iter().map(|letter| letter.character).peekable();
     while let Some(character) = characters.next() {
-        match characters.next_if_eq(&DOT_ABOVE) {
-            Some(_) => text += &format!("\\dot{{{character}}}"),
-            None => text.push(character),
+        match (character, characters.next_if_eq(&DOT_ABOVE)) {
+            (_, Some(_)) => text += &format!("\\dot{{{character}}}"),
+            // In braces a sign takes no more room than a letter.
+            ('−' | '*', None) => text += &format!("{{{character}}}"),
+            (_, None) => text.push(character),
         }
     }
     if italic {
