@@ -294,7 +294,7 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     });
     assert(sides.every((part) => part > 0.005), `edges cover ${sides} of the sides of the stage`);
     // Numbers have names and units; the flow is a mean, which is said.
-    assert.match(await page.textContent(".flow"), /mean over one period/);
+    assert.match(await page.textContent(".flow"), /mean over the last period/);
     const numbers = await page.textContent("#numbers");
     for (const unit of [/w[0-9.]+ d/, /temperature, escaped too[0-9.·⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ m d²\/t²/, /wall[−0-9.·⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+ m d²\/t³/]) assert.match(numbers, unit);
     assert.match(await page.textContent("#sliders"), /Width w \/ d.*Strain rate ε̇ \/ t⁻¹/s);

@@ -75,9 +75,8 @@ export class Readout {
   }
 
   private showNumbers({ frame, index, newest, film, tube, scene, playing, live, speed, chapter }: Shown, now: number): void {
-    // The first frame of a recording is before the first sample.
-    const row = tube.recorded ? Math.max(0, film.rowAt(frame.clock)) : film.rowAt(frame.clock);
-    const ratio = film.rows[row]?.average ?? NaN;
+    // Before the first sample there is none.
+    const ratio = film.rows[film.rowAt(frame.clock)]?.average ?? NaN;
     element("ratio").textContent = Number.isNaN(ratio) ? "–" : ratio.toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "");
     if (chapter === "friction" && frame.clock > 1) tell(ratio < -0.01 ? "The grains flow against the wave." : `J/Jmax = ${written(ratio, 2)}`);
     if (chapter === "begins") tell(this.spaceTime.words());

@@ -151,11 +151,20 @@ pub(crate) struct FrameArguments {
     )]
     pub(crate) trajectory: Vec<TrajectoryFormat>,
     /// Time between two frames, in periods or, as in 2.5t, in time; the default is a tenth of a period.
-    #[arg(long, value_name = "SPAN", requires = "trajectory")]
+    #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     pub(crate) trajectory_every: Option<Span>,
     /// Frames in this part of the run only, in periods or time: 20:25, 100:, :5t.
-    #[arg(long, value_name = "FROM:TO", requires = "trajectory")]
+    #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true)]
     pub(crate) trajectory_window: Option<Window>,
+}
+
+impl FrameArguments {
+    /// Whether anything is asked of a trajectory.
+    pub(crate) fn asks(&self) -> bool {
+        !self.trajectory.is_empty()
+            || self.trajectory_every.is_some()
+            || self.trajectory_window.is_some()
+    }
 }
 
 #[derive(Debug, Args)]
@@ -174,10 +183,15 @@ pub(crate) struct TrajectoryArguments {
     )]
     pub(crate) formats: Vec<TrajectoryFormat>,
     /// How long to go on from the saved state, in periods or, as in 40t, in time; 0 is the state alone.
-    #[arg(long, value_name = "SPAN", default_value = "0")]
+    #[arg(
+        long,
+        value_name = "SPAN",
+        default_value = "0",
+        allow_hyphen_values = true
+    )]
     pub(crate) duration: Span,
     /// Time between two frames; the default is a tenth of a period.
-    #[arg(long, value_name = "SPAN")]
+    #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     pub(crate) every: Option<Span>,
     /// Folder for the frames, other than a run's; the default is DIR/from-state.
     #[arg(long, value_name = "DIR")]

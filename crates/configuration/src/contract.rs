@@ -95,7 +95,12 @@ impl Contract<'_> {
             return;
         }
         if !takes(schema, &item.node) {
-            return self.wrong_type(item, schema, path);
+            return match item.node {
+                Node::Float(number) if schema["type"] == "integer" && number.fract() == 0.0 => {
+                    self.whole_as_real(item, number, schema, path);
+                }
+                _ => self.wrong_type(item, schema, path),
+            };
         }
         match &item.node {
             Node::Table(table) => self.table(table, Some(&item.origin), schema, path),
@@ -105,6 +110,26 @@ impl Contract<'_> {
             Node::Float(number) => self.range(item, *number, schema, path),
             Node::Boolean(_) | Node::Other(_) => {}
         }
+    }
+
+    /// Refuses a whole number that is written like another, such as 1e3.
+    fn whole_as_real(&mut self, item: &Item, number: f64, schema: &Value, path: &str) {
+        let whole = in_digits(number);
+        if let Some(complaint) = complaint(number, schema) {
+            let message = format!("{path} = {whole} {complaint}");
+            let place = (&item.origin, complaint);
+            return self.refuse(
+                ProblemKind::OutOfRange,
+                path,
+                place,
+                message,
+                allowed(schema),
+            );
+        }
+        let message = format!("{path} = {number:?} is not a whole number as it is written");
+        let place = (&item.origin, &*format!("write {whole}"));
+        let kind = ProblemKind::WrongType;
+        self.refuse(kind, path, place, message, allowed(schema));
     }
 
     fn wrong_type(&mut self, item: &Item, schema: &Value, path: &str) {
@@ -170,16 +195,7 @@ impl Contract<'_> {
     }
 
     fn range(&mut self, item: &Item, number: f64, schema: &Value, path: &str) {
-        let bound = |name: &str| schema[name].as_f64();
-        let complaint = if !number.is_finite() {
-            "is not a finite number"
-        } else if bound("minimum").is_some_and(|least| number < least)
-            || bound("exclusiveMinimum").is_some_and(|least| number <= least)
-        {
-            "is too small"
-        } else if bound("maximum").is_some_and(|most| number > most) {
-            "is too large"
-        } else {
+        let Some(complaint) = complaint(number, schema) else {
             return;
         };
         let message = format!("{path} = {} {complaint}", item.origin.text());
@@ -198,6 +214,30 @@ impl Contract<'_> {
     ) {
         let problem = Problem::new(kind, message).key(key).help(help);
         self.problems.push(problem.at(origin, label));
+    }
+}
+
+/// What is wrong with the size of a number, if anything is.
+fn complaint(number: f64, schema: &Value) -> Option<&'static str> {
+    let bound = |name: &str| schema[name].as_f64();
+    if !number.is_finite() {
+        Some("is not a finite number")
+    } else if bound("minimum").is_some_and(|least| number < least)
+        || bound("exclusiveMinimum").is_some_and(|least| number <= least)
+    {
+        Some("is too small")
+    } else if bound("maximum").is_some_and(|most| number > most) {
+        Some("is too large")
+    } else {
+        None
+    }
+}
+
+/// A whole number without a point, as long as it can be read.
+fn in_digits(number: f64) -> String {
+    match number.abs() < 1e15 {
+        true => format!("{number:.0}"),
+        false => format!("{number:e}"),
     }
 }
 

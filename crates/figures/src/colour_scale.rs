@@ -265,6 +265,12 @@ impl ColourScale {
         0.5 * LINE * (lines as f64 - LINES_BESIDE_BAR).max(0.0)
     }
 
+    /// How far the lines of the label reach below the middle of a bar of a width, in all the room at its left.
+    pub(crate) fn reach_below(&self, width: f64, room: f64) -> f64 {
+        let lines = self.label_lines(self.label_room(width, room)).len();
+        0.5 * LINE * lines as f64
+    }
+
     /// Draws the bar with its label in the middle below panels; returns the height that it takes.
     pub(crate) fn draw_bar_below(&self, drawing: &mut Drawing, span: Rectangle, top: f64) -> f64 {
         let (height, width) = (LOW_BAR.0, LOW_BAR.1.min(LOW_BAR_PART * span.width));

@@ -20,8 +20,8 @@ pub struct PictureFigure<'a> {
     pub columns: u32,
     /// Notes above the picture in markup, the first at its left, the last at its right.
     pub notes: &'a [String],
-    /// Places along the upper edge.
-    pub marks: &'a [PlaceMark],
+    /// Places along the upper edge; `None` without room for any, which pictures of one size all have or all lack.
+    pub marks: Option<&'a [PlaceMark]>,
     /// The length that is shown for scale.
     pub scale_bar: Option<&'a ScaleBar>,
     /// What the colours mean, from the uppermost bar.
@@ -128,7 +128,12 @@ impl PictureFigure<'_> {
         for upper in (1..drops.len()).rev() {
             drops[upper] += drops[upper - 1];
         }
-        let height = area.bottom() + whole(self.space_below() + drops.iter().sum::<f64>());
+        let mut below = self.space_below() + drops.iter().sum::<f64>();
+        if let Some(last) = self.colours.last() {
+            let middle = below - EDGE + 2.0 - ROW + 0.5 * BAR_HEIGHT;
+            below = below.max(middle + last.reach_below(bar_width, bar_left - free_from) + 2.0);
+        }
+        let height = area.bottom() + whole(below);
         let mut drawing = Drawing::new(area.width, height, self.title);
         (drawing.paper, drawing.pixels_per_point) = (page, scale);
         drawing.layer("picture", None).image(Image {
@@ -174,7 +179,7 @@ impl PictureFigure<'_> {
         if !self.notes.is_empty() {
             space += EDGE + LABEL_SIZE + 2.0;
         }
-        if !self.marks.is_empty() {
+        if self.marks.is_some() {
             space += LEGEND_SIZE + MARK.1 + 2.0;
         }
         space
@@ -203,24 +208,27 @@ impl PictureFigure<'_> {
         }
     }
 
-    /// Small triangles that point down to the picture; a word that would stand on another is left out.
+    /// Small triangles that point down to the picture, each with its word, which keeps off the edges of the page; a mark whose
+    /// word would stand on another is left out.
     fn draw_marks(&self, layer: &mut Layer, area: Rectangle, ink: Colour) {
         let tip = area.top - 0.5;
         let mut taken: Vec<(f64, f64)> = Vec::new();
-        for mark in self.marks {
+        for mark in self.marks.unwrap_or_default() {
             let x = area.width * mark.place;
+            let text = Text::new(mark.label, LEGEND_SIZE);
+            let half = 0.5 * text.width + 2.0;
+            let middle = x.min(area.width - half).max(half);
+            let (left, right) = (middle - half, middle + half);
+            let is_free = taken.iter().all(|&(from, to)| right < from || left > to);
+            if !is_free || right > area.width + 1e-9 {
+                continue;
+            }
+            taken.push((left, right));
             let corners = [(0.0, 0.0), (-MARK.0, -MARK.1), (MARK.0, -MARK.1)];
             let corners = corners.map(|(side, up)| Point::new(x + side, tip + up));
             layer.fill(Path::polygon(corners), ink);
-            let text = Text::new(mark.label, LEGEND_SIZE);
-            let half = 0.5 * text.width;
-            let (left, right) = (x - half - 2.0, x + half + 2.0);
-            let is_free = taken.iter().all(|&(from, to)| right < from || left > to);
-            if is_free && left > 0.0 && right < area.width {
-                taken.push((left, right));
-                let baseline = tip - MARK.1 - 2.0;
-                layer.text((x, baseline), Anchor::Middle, text, ink);
-            }
+            let baseline = tip - MARK.1 - 2.0;
+            layer.text((middle, baseline), Anchor::Middle, text, ink);
         }
     }
 
@@ -246,6 +254,14 @@ mod tests {
     use super::*;
 
     fn draw(pixels: &[u8]) -> Result<Drawing, FigureError> {
+        let marks = [(0.01, "throat"), (0.3, "throat"), (0.31, "belly")];
+        draw_with(
+            pixels,
+            Some(&marks.map(|(place, label)| PlaceMark { place, label })),
+        )
+    }
+
+    fn draw_with(pixels: &[u8], marks: Option<&[PlaceMark]>) -> Result<Drawing, FigureError> {
         let notes = ["*t*/*T* = 1.5", "*J*/*J*_{max} = 0.9"].map(str::to_owned);
         let (length, label) = (0.25, "10 *d*".to_owned());
         let scale_bar = ScaleBar { length, label };
@@ -253,8 +269,7 @@ mod tests {
             pixels,
             columns: 400,
             notes: &notes,
-            marks: &[(0.3, "throat"), (0.31, "belly")]
-                .map(|(place, label)| PlaceMark { place, label }),
+            marks,
             scale_bar: Some(&scale_bar),
             ..PictureFigure::default()
         }
@@ -286,11 +301,43 @@ mod tests {
     fn words_do_not_stand_on_each_other_and_the_scale_is_as_long_as_it_says() {
         let pixels = vec![255; 1200 * 60];
         let drawing = draw(&pixels).expect("drawable");
-        assert_eq!(drawing.texts("marks").len(), 1);
+        // The first word is moved in from the edge; the last mark, whose word has no room, is left out.
+        assert_eq!(drawing.texts("marks").len(), 2);
+        assert_eq!(drawing.paths("marks").len(), 2);
         let [from, to, ..] = drawing.paths("scale")[0].points()[..] else {
             panic!("a scale is of segments");
         };
         assert!((to.x - from.x - 0.25 * 400.0 / FEWEST_PIXELS_PER_POINT).abs() < 1e-9);
+    }
+
+    #[test]
+    fn room_for_marks_is_kept_where_there_is_none_at_the_moment() {
+        let pixels = vec![255; 1200 * 60];
+        let height = |marks: Option<&[PlaceMark]>| draw_with(&pixels, marks).unwrap().size()[1];
+        let mark = |place, label| PlaceMark { place, label };
+        assert_eq!(height(Some(&[])), height(Some(&[mark(0.3, "belly")])));
+        assert!(height(Some(&[])) > height(None));
+    }
+
+    #[test]
+    fn a_label_of_many_lines_ends_above_the_edge_of_the_page() {
+        let label = "axial velocity along the tube, (*m*/*k*)^{1/2}*d* and more and more of it";
+        let colours = ColourScale::new(label, -0.2, 0.2);
+        let drawing = PictureFigure {
+            pixels: &vec![255; 900 * 60],
+            columns: 300,
+            colours: &[&colours],
+            ..PictureFigure::default()
+        };
+        let drawing = drawing.draw().expect("drawable");
+        let texts = drawing.texts("colour bar");
+        let lowest = texts.iter().map(|(start, _)| start.y).fold(0.0, f64::max);
+        assert!(texts.len() > 8, "{texts:?}");
+        assert!(
+            lowest + 2.0 < drawing.height,
+            "{lowest} of {}",
+            drawing.height
+        );
     }
 
     #[test]

@@ -10,8 +10,8 @@ const FARTHEST: f64 = 2.0;
 /// Correlations of the grains' diameters with where they are: from -1 to 1, 0 without order, with a spread of
 /// (N - 1)^(-1/2) where N grains lie at random.
 ///
-/// r = sum (d - d_m) (x - x_m)/(sum (d - d_m)^2 sum (x - x_m)^2)^(1/2), d_m and x_m the means. There is none where all diameters or
-/// all places are the same.
+/// r = sum (d - d_m) (x - x_m)/(sum (d - d_m)^2 sum (x - x_m)^2)^(1/2), d_m and x_m the means. There is none of fewer than three
+/// grains, and where all diameters or all places are the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Segregation {
     /// With the radial place r/(R - (d_w + d)/2), the distance from the axis over the largest that a grain of its size can have
@@ -51,7 +51,10 @@ impl Segregation {
     }
 }
 
-/// Coefficient of correlation of pairs; `None` where one of the two is the same in all.
+/// Fewest pairs whose correlation says something: that of two is always 1 or -1.
+const FEWEST: f64 = 3.0;
+
+/// Coefficient of correlation of pairs, from -1 to 1; `None` of too few, and where one of the two is the same in all.
 fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let number = pairs.clone().count() as f64;
     let (x, y) = pairs
@@ -67,8 +70,9 @@ fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     }
     // Rounding leaves a trace of what is the same in all.
     let is_same = |squares: f64, mean: f64| squares <= 1e-24 * number * mean * mean;
-    let differ = number > 0.0 && !is_same(of_x, x) && !is_same(of_y, y);
-    differ.then(|| of_both / (of_x * of_y).sqrt())
+    let differ = number >= FEWEST && !is_same(of_x, x) && !is_same(of_y, y);
+    // Rounding may lead beyond.
+    differ.then(|| (of_both / (of_x * of_y).sqrt()).clamp(-1.0, 1.0))
 }
 
 #[cfg(test)]
@@ -84,6 +88,18 @@ mod tests {
         let found = of(&[(1.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 1.0)]);
         assert!((found - 1.0 / 3.0_f64.sqrt()).abs() < 1e-12, "{found}");
         assert!(of(&[(1.0, 0.1), (2.0, 0.1), (3.0, 0.1)]).is_nan());
-        assert!(of(&[]).is_nan());
+        assert!(of(&[]).is_nan() && of(&[(1.0, 0.1), (2.0, 0.2)]).is_nan());
+    }
+
+    #[test]
+    fn rounding_leads_no_correlation_beyond_one() {
+        for number in 3..200_u32 {
+            let line = (0..number).map(|it| {
+                let x = 1.0 + 0.1 * f64::from(it);
+                (x, 0.3 * x)
+            });
+            let found = correlation(line).unwrap();
+            assert!((1.0 - 1e-12..=1.0).contains(&found), "{number}: {found}");
+        }
     }
 }

@@ -8,7 +8,7 @@ use peristalsis_observe::{GrainContact, Quantity};
 #[rustfmt::skip]
 pub(crate) const CONTACT: &[Quantity<GrainContact>] = &[
     Quantity::new("i", "1", "number of the grain, from 0", Whole(|c| c.touching.first as u64)),
-    Quantity::new("j", "1", "number of its partner: from N on a sphere of the wall", Whole(|c| c.touching.second as u64)),
+    Quantity::new("j", "1", "number of its partner: from N on a sphere of the wall, or a flank of a smooth one", Whole(|c| c.touching.second as u64)),
     Quantity::new("wall", "", "whether the partner is a sphere of the wall", Truth(|c| c.is_with_wall)),
     Quantity::new("overlap", "d", "overlap", Real(|c| c.touching.overlap)),
     Quantity::new("normal_force", "m d/t^2", "force along the line of centres, positive where it repels", Real(|c| c.touching.normal_force)),

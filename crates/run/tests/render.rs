@@ -421,6 +421,27 @@ fn the_space_time_diagram_of_a_wave_that_pauses_has_the_time_of_the_flow() {
     assert!(found.contains(&4.0), "{found:?}");
 }
 
+/// A film of a run with a pause ended at the first frame of the pause: without marks the page was lower.
+#[test]
+fn frames_of_a_wave_that_pauses_have_one_layout() {
+    let pause =
+        "drive.schedule={form='steps',parameter='strain_rate',at=[0.2,0.4],values=[0,0.05]}";
+    let settings = format!("tube.waves=2 grains.number=30 run.periods=1 {pause}");
+    let mut run = Run::new(common::configuration("frictionless", &settings)).unwrap();
+    let first = FrameSource::now(&run, false);
+    let scene = PictureScene::new(&run, look(300), std::slice::from_ref(&first)).unwrap();
+    let (mut sizes, mut said) = (Vec::new(), Vec::new());
+    while !run.is_complete() {
+        let drawing = scene.draw(&FrameSource::now(&run, false)).unwrap();
+        sizes.push(drawing.size());
+        said.push(drawing.svg().contains("wave stands"));
+        run.advance().unwrap();
+    }
+    sizes.dedup();
+    assert_eq!(sizes.len(), 1, "{sizes:?}");
+    assert!(said.contains(&true) && !said[0], "{said:?}");
+}
+
 #[test]
 fn contacts_are_drawn_with_a_bar_of_their_forces_and_in_a_section_only_its_own() {
     let settings = "drive.width=1.4 initial.state=jammed tube.waves=2 grains.number=60";

@@ -18,7 +18,7 @@ use crate::stop::Stop;
 pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let _stop = Stop::watch()?;
     let configuration = configuration(&arguments.configuration)?;
-    let request = request(&arguments.frames);
+    let request = request(&arguments.frames)?;
     let estimate = packing(&configuration, || {
         estimate(&configuration, request.as_ref())
     })

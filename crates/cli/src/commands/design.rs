@@ -44,6 +44,12 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
     if arguments.keys {
         return show(arguments.schema, &schema(), "", &[]);
     }
+    if arguments.schema.markdown {
+        return Err(Failure::usage(
+            "--markdown is for the keys of a design",
+            "add --keys",
+        ));
+    }
     let _stop = Stop::watch()?;
     let sources = &arguments.configuration;
     for path in arguments.write.iter().chain(&arguments.html) {
@@ -66,7 +72,8 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
     let design = Design::of(&configuration, estimate).ok_or_else(no_design)?;
     if let Some(path) = &arguments.html {
         let name = crate::sources::name(sources);
-        write(path, &page(&design, &name, &in_words(&design)))?;
+        let cost = estimate_in_words(&design.estimate);
+        write(path, &page(&design, &name, &cost))?;
     }
     print_report(arguments.json, || &design, || in_words(&design))
 }

@@ -28,7 +28,7 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     let plan = TrajectoryPlan::onward(&request, run.configuration(), now, arguments.duration)?;
     let usual = || folder.path().join(FROM_STATE);
     let out = arguments.out.clone().unwrap_or_else(usual);
-    RunFolder::check(&out)?;
+    RunFolder::check(&out).map_err(not_into)?;
     std::fs::create_dir_all(&out).map_err(|source| {
         let folder = out.clone();
         RunError::Folder { folder, source }
@@ -40,6 +40,16 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     let report = frames.report();
     print_report(arguments.json, || &report, || in_words(&report) + "\n")?;
     ending
+}
+
+/// A folder that is not free for frames: nothing goes on with those in it.
+fn not_into(error: RunError) -> Failure {
+    match error {
+        RunError::HoldsAnotherRun { .. } => {
+            Failure::usage(error.to_string(), "name another folder with --out")
+        }
+        other => other.into(),
+    }
 }
 
 /// Advances from frame to frame.
@@ -55,12 +65,21 @@ fn go_on(run: &mut Run, frames: &mut Trajectory, stop: &Stop) -> Result<ExitCode
 }
 
 /// What the options ask for, if they ask for a trajectory.
-pub(crate) fn request(arguments: &FrameArguments) -> Option<TrajectoryRequest> {
-    (!arguments.trajectory.is_empty()).then(|| TrajectoryRequest {
-        formats: arguments.trajectory.clone(),
-        every: arguments.trajectory_every,
-        window: arguments.trajectory_window.unwrap_or_default(),
-    })
+pub(crate) fn request(arguments: &FrameArguments) -> Result<Option<TrajectoryRequest>, Failure> {
+    if !arguments.trajectory.is_empty() {
+        return Ok(Some(TrajectoryRequest {
+            formats: arguments.trajectory.clone(),
+            every: arguments.trajectory_every,
+            window: arguments.trajectory_window.unwrap_or_default(),
+        }));
+    }
+    match arguments.asks() {
+        true => Err(Failure::usage(
+            "--trajectory-every and --trajectory-window say which frames a trajectory has",
+            "add --trajectory gsd",
+        )),
+        false => Ok(None),
+    }
 }
 
 /// What was written, in a line.

@@ -24,6 +24,10 @@ fn a_design_is_told_written_and_computed() {
     }
     let page = std::fs::read_to_string(place.path("hose.html")).unwrap();
     assert!(page.starts_with("<!DOCTYPE html>") && page.contains("Design of hose"));
+    // Each fact once, and no line beyond the page.
+    assert_eq!(page.matches("clear bore over grain diameter").count(), 1);
+    assert!(page.contains("kg/h, all grains with the wave") && page.contains("expected time"));
+    assert!(page.contains("pre-wrap"), "{page}");
     let json = place
         .does("design hose.toml --json --set gravity=0 tube.occlusion=0.5")
         .json();
@@ -53,6 +57,9 @@ fn a_design_is_told_written_and_computed() {
         preset["largest_mass_flow_rate_kg_per_h"],
         serde_json::Value::Null
     );
+    for call in ["design --markdown", "design hose.toml --markdown"] {
+        place.refuses(call, &["--markdown is for the keys", "add --keys"]);
+    }
     let keys = place.does("design --keys --markdown").stdout;
     assert!(
         keys.contains("## [tube]") && keys.contains("`occlusion`"),

@@ -211,7 +211,7 @@ fn a_disk_that_fills_with_a_trajectory_loses_nothing_else() {
         assert!(summary["trajectory"]["frames"].as_u64().unwrap() > 3);
         place.refuses(
             "run --resume stopped --trajectory gsd",
-            &["leave out --trajectory"],
+            &["leave out --trajectory, --trajectory-every"],
         );
         place.does("run --resume stopped");
         place.does(&format!("{run} --out through"));

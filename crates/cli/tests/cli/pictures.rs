@@ -22,9 +22,10 @@ fn a_finished_run_is_drawn_from_every_side() {
         .shows(&["300 x ", "results/tube-side.png"]);
     let section =
         "render results --view section --position 0.25 --width 64 --bare --out section.png";
-    place.does(section).shows(&["64 x 64 pixels: section.png"]);
+    place
+        .does(section)
+        .shows(&["64 x 64 pixels of t = ", "section.png"]);
     for options in [
-        "--view space-time",
         "--format svg --colour coordination --wall glass --paper dark",
         "--at 1.3 --colour axial-displacement --out displaced.png",
         "--from start --colour pressure --range 0:0.5 --at 0.5 --out pressure.png",
@@ -32,6 +33,7 @@ fn a_finished_run_is_drawn_from_every_side() {
         let call = format!("render results --width 200 {options}");
         place.does(&call);
     }
+    place.does("render results --view space-time");
     for file in [
         "results/tube-side.png",
         "section.png",
@@ -114,7 +116,7 @@ fn films_have_a_frame_for_each_instant_wherever_it_comes_from() {
         ("--format gif --window 1:2", 5),
         ("--format gif --from start --window 0:1 --every 0.2", 6),
         (
-            "--format gif --from state --duration 0.3 --every 0.1 --view section --eye wave",
+            "--format gif --from state --duration 0.3 --every 0.1 --view section",
             4,
         ),
         ("--film --trajectory results/trajectory.gsd --every 1", 5),
@@ -135,6 +137,22 @@ fn films_have_a_frame_for_each_instant_wherever_it_comes_from() {
         .shows(&["5 frames of 160 x ", "film.apng"]);
     let film = bytes(&place, "film.apng");
     assert!(film.starts_with(b"\x89PNG") && film.windows(4).any(|name| name == b"acTL"));
+}
+
+/// The nearest frame was drawn, and nothing said of which instant it was.
+#[test]
+fn the_instant_of_a_picture_is_told() {
+    let place = place();
+    // Frames every quarter of a period, of 20 t.
+    let call = "render results --width 64 --out one.png --at 13t";
+    place
+        .does(call)
+        .shows(&["pixels of t = 15 (0.75 periods): one.png"]);
+    let made = place.does(&format!("{call} --json")).json();
+    let near = |key: &str, value: f64| (made[key].as_f64().unwrap() - value).abs() < 1e-6;
+    assert!(near("time", 15.0) && near("periods", 0.75), "{made}");
+    let all = place.does("render results --view space-time --json").json();
+    assert!(all["time"].is_null(), "{all}");
 }
 
 #[test]
@@ -163,6 +181,18 @@ render results --film --from state --at 2 | --window
 render results --window 1:2 | add --film
 render results --from state --at 2 | one instant
 render results --waves 0 | positive number of waves
+render results --waves -1 | positive number of waves
+render results --at -1 | from 0 on
+render results --at -1t | from 0 on
+render results --window -1:2 --film | 20:25 in periods
+render results --fps -1 --film | 0.1 to 120
+render results --fps 10 --out film.png | add --film
+render results --fps 0 | add --film
+render results --view section --wall glass | take --view side
+render results --view section --waves 1 | take --view side
+render results --view section --eye wave | take --view side
+render results --view space-time --waves 1 | take --view side
+render results --view space-time --at 1 | leave out
 ";
     for line in refused.trim().lines() {
         let (call, expected) = line.split_once(" | ").unwrap();

@@ -35,6 +35,17 @@ fn the_summary_alone_is_on_standard_output() {
 }
 
 #[test]
+fn instructions_that_the_machine_lacks_are_refused_before_a_folder_is_made() {
+    let place = Place::new();
+    for call in ["run SMALL --out made", "run SMALL --seeds 1,2 --out made"] {
+        // Those of WebAssembly no machine has.
+        let call = format!("{call} --instructions simd128");
+        place.refuses(&call, &["does not have the instructions"]);
+    }
+    assert!(!place.path("made").exists());
+}
+
+#[test]
 fn a_transition_is_a_number() {
     let place = Place::new();
     let settings = "drive.width=2.5 drive.strain_rate=0.1 tube.waves=2 run.periods=30";

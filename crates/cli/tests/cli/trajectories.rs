@@ -47,8 +47,9 @@ fn what_cannot_be_is_refused_before_anything_is_made() {
     let place = Place::new();
     for (options, says) in [
         ("--trajectory xyz", "gsd, vtp, lammps"),
-        ("--trajectory-every 1", "--trajectory <FORMAT"),
-        ("--trajectory-window 1:2", "--trajectory <FORMAT"),
+        ("--trajectory-every 1", "add --trajectory gsd"),
+        ("--trajectory-window 1:2", "add --trajectory gsd"),
+        ("--trajectory gsd --trajectory-every -1", "from 0 on"),
         ("--trajectory gsd --trajectory-every often", "such as 0.1"),
         ("--trajectory gsd --trajectory-every 0", "a longer interval"),
         ("--trajectory gsd --trajectory-window 3", "FROM:TO"),
@@ -117,10 +118,11 @@ fn frames_from_the_state_of_a_finished_run() {
         assert_eq!(place.inventory()[&name], content, "{}", name.display());
     }
 
-    place.refuses(
+    let again = place.refuses(
         "trajectory results --out on",
         &["holds another run", "--out"],
     );
+    assert!(!again.message().contains("--resume"), "{}", again.message());
     place.refuses("trajectory nowhere", &["nowhere holds no run"]);
 }
 

@@ -98,6 +98,11 @@ fn what_cannot_be_viewed_is_refused() {
         ("none.gsd --port=0", "none.gsd"),
         ("alone.gsd --port=0", "config.toml"),
         ("alone.gsd --live", "played, not computed"),
+        ("frictionless --live", "for the folder of a run"),
+        (
+            "damaged/config.toml --from-state",
+            "for the folder of a run",
+        ),
         ("empty drive.width=2.7", "--set"),
         ("damaged --port=0", "begin like a GSD file"),
     ] {

@@ -405,7 +405,7 @@ fn picture() -> Drawn {
         pixels: &pixels,
         columns: 800,
         notes: &["*t*/*T* = 1.5", "wave →", "*J*/*J*_{max} = 0.9"].map(str::to_owned),
-        marks: &[mark(0.25, "belly"), mark(0.75, "throat")],
+        marks: Some(&[mark(0.25, "belly"), mark(0.75, "throat")]),
         scale_bar: Some(&scale_bar),
         colours: &[&ColourScale::new("*v_z*/*c*", -1.0, 1.0).palette(Palette::Diverging)],
         width: Width::DoubleColumn,

@@ -373,6 +373,18 @@ fn vtp_holds_spheres_and_contacts_and_its_index_their_times() {
 }
 
 #[test]
+fn a_smooth_wall_has_no_number_among_the_spheres_of_vtp() {
+    let numbers = |second: usize| {
+        let mut touching = frame(1, false);
+        touching.contacts[0].spheres[1] = second;
+        vtp_array(&vtp::contacts(&touching), "second")
+    };
+    let int32 = |number: i32| ("Int32".to_owned(), number.to_le_bytes().to_vec());
+    // Three grains and two wall spheres.
+    assert_eq!([4, 5, 6].map(numbers), [int32(4), int32(-1), int32(-1)]);
+}
+
+#[test]
 fn what_a_kill_leaves_of_a_frame_is_cut_off() {
     for format in [TrajectoryFormat::Gsd, TrajectoryFormat::Lammps] {
         let place = tempfile::tempdir().unwrap();

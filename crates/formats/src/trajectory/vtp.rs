@@ -2,8 +2,8 @@
 //!
 //! `trajectory.pvd` lists the spheres: points with type (0 grain, 1 wall), diameter, velocity and, where grains turn,
 //! angular velocity and orientation. `contacts.pvd` lists the contacts: lines from centre to centre with normal and
-//! tangential force, overlap, the numbers of the two spheres, and whether they slide. A line across the seam of the tube
-//! leaves it on one side. The values of the instant are field data. See
+//! tangential force, overlap, the numbers of the two spheres, and whether they slide. Of a contact with a smooth wall the
+//! second number is -1, and the line ends on the curve R(z). A line across the seam of the tube leaves it on one side. The values of the instant are field data. See
 //! <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
 use std::fs::{self, File};
@@ -239,7 +239,8 @@ pub(super) fn spheres(frame: &Frame) -> Vec<u8> {
     file.finish()
 }
 
-fn contacts(frame: &Frame) -> Vec<u8> {
+/// The contacts of a frame.
+pub(super) fn contacts(frame: &Frame) -> Vec<u8> {
     let contacts = &frame.contacts;
     let number = contacts.len();
     let mut file = Polydata::new(frame);
@@ -252,7 +253,13 @@ fn contacts(frame: &Frame) -> Vec<u8> {
     reals("tangential_force", |it| it.tangential_force);
     reals("overlap", |it| it.overlap);
     file.whole("first", contacts.iter().map(|it| it.spheres[0]));
-    file.whole("second", contacts.iter().map(|it| it.spheres[1]));
+    // A smooth wall is no sphere of the frame.
+    let second = contacts.iter().map(|it| match it.spheres[1] {
+        sphere if sphere < frame.spheres() => sphere as i32,
+        _ => -1_i32,
+    });
+    let second = second.flat_map(i32::to_le_bytes).collect();
+    file.array("Int32", "second", 1, second);
     let sliding = contacts.iter().map(|it| u8::from(it.sliding));
     file.array("UInt8", "sliding", 1, sliding.collect());
     file.close("CellData");

@@ -5,8 +5,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::{Design, rounded};
 use crate::report::STYLE;
 
-/// The page: groups, regime, expectation, what is outside the data, cost; `lines` are the words of the command line.
-pub fn page(design: &Design, name: &str, lines: &str) -> String {
+/// The page: groups, regime, expectation, what is outside the data, cost; `cost` are the words of the command line on what
+/// would run.
+pub fn page(design: &Design, name: &str, cost: &str) -> String {
     let page: Markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -31,8 +32,14 @@ pub fn page(design: &Design, name: &str, lines: &str) -> String {
                                 {
                                     ", " (rounded(rate)) " ± " (rounded(error)) " kg/h"
                                 }
-                                " (" (flow.expectation.points) " published points)."
+                                " (" (flow.expectation.points) " published points of "
+                                (rounded(flow.expectation.range[0])) " to " (rounded(flow.expectation.range[1]))
+                                ", the nearest at " (rounded(flow.expectation.distance)) ": "
+                                (flow.expectation.studies.join(", ")) ")."
                             }
+                        }
+                        @if let Some(largest) = design.largest_mass_flow_rate_kg_per_h {
+                            p { "At most " (rounded(largest)) " kg/h, all grains with the wave." }
                         }
                         h2 { "Dimensionless groups" }
                         div.scroll {
@@ -50,12 +57,18 @@ pub fn page(design: &Design, name: &str, lines: &str) -> String {
                                 }
                             }
                         }
+                        @if design.groups.iter().any(|group| group.place() == "near") {
+                            p {
+                                "near: just outside the range, by less than two tubes that count as alike may differ; counted "
+                                "as inside."
+                            }
+                        }
                         @if !design.outside.is_empty() {
                             h2 { "Outside the published runs" }
                             ul { @for line in &design.outside { li { (line) } } }
                         }
-                        h2 { "All of it" }
-                        pre { (lines) }
+                        h2 { "What would run" }
+                        pre style="white-space: pre-wrap" { (cost) }
                     }
                 }
             }

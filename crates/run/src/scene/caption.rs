@@ -28,17 +28,23 @@ const SCALE_PART: f64 = 0.26;
 pub(super) struct Caption {
     pub(super) title: String,
     pub(super) notes: Vec<String>,
-    pub(super) marks: Vec<PlaceMark>,
+    /// `None` where no picture of the run has any.
+    pub(super) marks: Option<Vec<PlaceMark>>,
     pub(super) scale_bar: ScaleBar,
 }
 
 impl Caption {
     pub(super) fn of(scene: &PictureScene, frame: &Frame) -> Self {
+        let moves_ever = scene.period.is_some();
         let is_moving = scene.wall.frequency(frame.time) != 0.0;
         let (place, across) = match scene.look.aspect {
             Aspect::Side => {
-                let arrow = if is_moving { "wave →" } else { "" };
-                (arrow.to_owned(), scene.shown + 2.0 * MARGIN)
+                let words = match (moves_ever, is_moving) {
+                    (false, _) => "",
+                    (true, false) => "wave stands",
+                    (true, true) => "wave →",
+                };
+                (words.to_owned(), scene.shown + 2.0 * MARGIN)
             }
             Aspect::Section(place) => {
                 let words = match place {
@@ -54,20 +60,19 @@ impl Caption {
         let words: Vec<String> = words.filter(|words| !words.is_empty()).collect();
         let place = words.join(",   ");
         let instant = instant(frame.time, scene.period, scene.units);
-        let notes = if is_moving {
+        let mut notes = vec![instant, place];
+        // All frames of a film have one layout, also where the wave pauses.
+        if moves_ever {
             let flow = match frame.value("flow_rate_ratio") {
                 Some(ratio) if ratio.is_finite() => format!(" = {}", decimal(ratio, 2)),
                 _ if frame.grains == 0 => ": no grains".to_owned(),
+                _ if !is_moving => ": none".to_owned(),
                 _ => ": not yet".to_owned(),
             };
-            vec![instant, place, format!("*J*/*J*_{{max}}{flow}")]
-        } else {
-            vec![instant, place]
-        };
-        let mut marks = Vec::new();
-        if is_moving && scene.look.aspect == Aspect::Side {
-            marks = self::marks(scene, frame);
+            notes.push(format!("*J*/*J*_{{max}}{flow}"));
         }
+        let has_marks = moves_ever && scene.look.aspect == Aspect::Side;
+        let marks = has_marks.then(|| self::marks(scene, frame));
         let lengths = SCALES.into_iter().filter(|it| *it <= SCALE_PART * across);
         let length = lengths.fold(SCALES[0], f64::max);
         Self {

@@ -263,7 +263,7 @@ impl PictureScene {
             pixels: picture.pixels(),
             columns: picture.width(),
             notes: if full { &caption.notes } else { &[] },
-            marks: if full { &caption.marks } else { &[] },
+            marks: caption.marks.as_deref().filter(|_| full),
             scale_bar: full.then_some(&caption.scale_bar),
             colours: if full { &scales } else { &[] },
             paper: self.look.paper,

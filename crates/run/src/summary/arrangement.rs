@@ -21,7 +21,8 @@ pub struct MixedGrains {
 }
 
 impl MixedGrains {
-    /// From all samples of a run and the [ends of its late periods](ends_of_periods). `None` where there is no index.
+    /// From all samples of a run and the [ends of its late periods](ends_of_periods). `None` where there is no index, and where
+    /// no period ends so late.
     pub(super) fn of(samples: &[Sample], ends: &[Sample]) -> Option<Self> {
         let measured =
             |of: fn(&Mixing) -> f64| measured(ends, |sample| sample.mixing.as_ref().map(of));
@@ -64,24 +65,15 @@ impl SegregatedSizes {
     }
 }
 
-/// The late samples that end a period of `each` samples, the last one first, or the last sample where none does: what is
-/// measured at the end of a period is repeated by all samples up to the next.
+/// The late samples that end a period of `each` samples, the last one first; none where none does. What is measured at the end
+/// of a period is repeated by all samples up to the next, and the first period repeats how the grains began.
 pub(super) fn ends_of_periods(samples: &[Sample], late: &[Sample], each: usize) -> Vec<Sample> {
     let since = samples.len() % each;
-    let ends: Vec<Sample> = late
-        .iter()
-        .rev()
-        .skip(since)
-        .step_by(each)
-        .copied()
-        .collect();
-    match ends.is_empty() {
-        true => late.last().copied().into_iter().collect(),
-        false => ends,
-    }
+    let ends = late.iter().rev().skip(since).step_by(each);
+    ends.copied().collect()
 }
 
-/// Mean and error of a number that is measured at the end of each period; `None` where one of the numbers is missing.
+/// Mean and error of a number that is measured at the end of each period; `None` where one of the numbers is missing, or all.
 fn measured(ends: &[Sample], value: impl Fn(&Sample) -> Option<f64>) -> Option<(f64, f64)> {
     let values: Option<Vec<f64>> = ends.iter().map(value).collect();
     let values = values.filter(|it| !it.is_empty())?;
@@ -115,7 +107,11 @@ mod tests {
         // Of nine a period the last whole ones, which end at steps 26 and 35; what the next ones repeat is not theirs.
         let found = of(&samples[20..], 9);
         assert!((found.axial.0 - 3.05).abs() < 1e-12);
-        assert!((of(&samples[37..], 9).axial.0 - 3.9).abs() < 1e-12);
+        // A run shorter than a period, or whose late part is: how the grains began is no result.
+        for (samples, late) in [(&samples[..8], 4), (&samples[..], 3)] {
+            let ends = ends_of_periods(samples, &samples[samples.len() - late..], 9);
+            assert_eq!(MixedGrains::of(samples, &ends), None);
+        }
         // An open tube has no index, grains of one size no segregation.
         let open = [Sample::default(); 3];
         assert_eq!(MixedGrains::of(&open, &open), None);

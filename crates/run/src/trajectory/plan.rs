@@ -42,7 +42,9 @@ impl FromStr for Span {
             .ok()
             .filter(|value| value.is_finite() && *value >= 0.0)
             .map(span)
-            .ok_or_else(|| "a number of periods, such as 0.1, or a time, such as 2.5t".to_owned())
+            .ok_or_else(|| {
+                "a number of periods from 0 on, such as 0.1, or a time, such as 2.5t".to_owned()
+            })
     }
 }
 

@@ -109,9 +109,9 @@ impl Recording {
         let interval = run.steps_per_sample as f64 * run.time_step + slack;
         let is_taken = |sample: &Sample| sample.time <= frame.time + slack;
         let taken = self.samples.partition_point(is_taken);
-        // What went on from a saved state has frames long after the last sample; the first frame is before the first one.
+        // What went on from a saved state has frames long after the last sample. Frames before the first one have none.
         let is_near = |sample: &&Sample| (frame.time - sample.time).abs() <= interval;
-        let sample = self.samples.get(taken.saturating_sub(1)).filter(is_near);
+        let sample = self.samples[..taken].last().filter(is_near);
         let head = Head {
             number: Some(number),
             past: false,

@@ -41,26 +41,25 @@ pub(crate) struct RenderArguments {
     /// From where the tube is looked at.
     #[arg(long, value_name = "VIEW", value_enum, default_value = "side")]
     pub(crate) view: ViewName,
-    /// What the grains are coloured by.
-    #[arg(
-        long,
-        value_name = "FIELD",
-        value_parser = one_of(FIELDS),
-        default_value = "axial-velocity",
-        alias = "color"
-    )]
-    pub(crate) colour: Field,
+    /// What the grains are coloured by; the default is axial-velocity.
+    #[arg(long, value_name = "FIELD", value_parser = one_of(FIELDS), alias = "color")]
+    pub(crate) colour: Option<Field>,
     /// Values of the first and the last colour; the default suits the field.
     #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
     pub(crate) range: Option<(f64, f64)>,
-    /// How the wall looks from the side.
-    #[arg(long, value_name = "LOOK", value_parser = one_of(WALLS), default_value = "cut")]
-    pub(crate) wall: WallLook,
-    /// What stands still in a film from the side.
-    #[arg(long, value_name = "WHAT", value_parser = one_of(EYES), default_value = "tube")]
-    pub(crate) eye: Eye,
+    /// How the wall looks from the side; the default is cut.
+    #[arg(long, value_name = "LOOK", value_parser = one_of(WALLS))]
+    pub(crate) wall: Option<WallLook>,
+    /// What stands still in a film from the side; the default is the tube.
+    #[arg(long, value_name = "WHAT", value_parser = one_of(EYES))]
+    pub(crate) eye: Option<Eye>,
     /// Place z of a section, in d; the default is the middle of the tube.
-    #[arg(long, value_name = "Z", conflicts_with = "position")]
+    #[arg(
+        long,
+        value_name = "Z",
+        conflicts_with = "position",
+        allow_negative_numbers = true
+    )]
     pub(crate) place: Option<f64>,
     /// Place of a section as a position in the wave frame, (z - c t)/lambda: it moves with the wave.
     #[arg(long, value_name = "POSITION", allow_negative_numbers = true)]
@@ -69,15 +68,15 @@ pub(crate) struct RenderArguments {
     /// which holds no forces.
     #[arg(long)]
     pub(crate) contacts: bool,
-    /// Wavelengths that a side view shows at most.
-    #[arg(long, value_name = "N", default_value_t = 2.0)]
-    pub(crate) waves: f64,
+    /// Wavelengths that a side view shows at most; the default is 2.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) waves: Option<f64>,
     /// Width in pixels, 16 to 16384; the default is 2400 for a picture, 960 for a film, and half of these for a section.
     #[arg(long, value_name = "PIXELS")]
     pub(crate) width: Option<u32>,
-    /// The page.
-    #[arg(long, value_name = "PAPER", value_parser = one_of(PAPERS), default_value = "light")]
-    pub(crate) paper: Paper,
+    /// The page; the default is light.
+    #[arg(long, value_name = "PAPER", value_parser = one_of(PAPERS))]
+    pub(crate) paper: Option<Paper>,
     /// No time, scale, marks or colours around the picture.
     #[arg(long)]
     pub(crate) bare: bool,
@@ -94,20 +93,25 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) trajectory: Option<PathBuf>,
     /// Instant of a picture, in periods of the run or, as in 40t, in time; the default is the last one.
-    #[arg(long, value_name = "SPAN")]
+    #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     pub(crate) at: Option<Span>,
     /// Part of the run that a film shows, in periods or time: 20:25, 100:, :5t; the default is all.
-    #[arg(long, value_name = "FROM:TO")]
+    #[arg(long, value_name = "FROM:TO", allow_hyphen_values = true)]
     pub(crate) window: Option<Window>,
     /// How long a film goes on from the saved state, in periods or time; the default is two periods.
-    #[arg(long, value_name = "SPAN", conflicts_with = "window")]
+    #[arg(
+        long,
+        value_name = "SPAN",
+        conflicts_with = "window",
+        allow_hyphen_values = true
+    )]
     pub(crate) duration: Option<Span>,
     /// Time between two frames of a film; the default is every frame of a trajectory, or else a twentieth of a period.
-    #[arg(long, value_name = "SPAN")]
+    #[arg(long, value_name = "SPAN", allow_hyphen_values = true)]
     pub(crate) every: Option<Span>,
-    /// Frames per second.
-    #[arg(long, value_name = "N", default_value_t = 20.0)]
-    pub(crate) fps: f64,
+    /// Frames per second of a film; the default is 20.
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) fps: Option<f64>,
     /// File for the picture or film; an older one is replaced. The default is DIR/tube-VIEW with the format's ending.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
@@ -130,16 +134,17 @@ impl RenderArguments {
             (ViewName::Section, None) => Aspect::Section(Place::At(self.place.unwrap_or(middle))),
             _ => Aspect::Side,
         };
+        let plain = Look::default();
         let usual = WIDTHS[usize::from(is_film)] / if aspect == Aspect::Side { 1 } else { 2 };
         Look {
             aspect,
-            field: self.colour,
+            field: self.colour.unwrap_or(plain.field),
             range: self.range,
-            wall: self.wall,
-            eye: self.eye,
-            waves: self.waves,
+            wall: self.wall.unwrap_or(plain.wall),
+            eye: self.eye.unwrap_or(plain.eye),
+            waves: self.waves.unwrap_or(plain.waves),
             width: self.width.unwrap_or(usual),
-            paper: self.paper,
+            paper: self.paper.unwrap_or(plain.paper),
             writing: match self.bare {
                 true => Writing::None,
                 false => Writing::Full,
@@ -148,6 +153,9 @@ impl RenderArguments {
         }
     }
 }
+
+/// Frames per second of a film, unless said otherwise.
+pub(super) const FRAMES_PER_SECOND: f64 = 20.0;
 
 fn range(text: &str) -> Result<(f64, f64), String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|it| it.is_finite());

@@ -4,7 +4,7 @@ mod arguments;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time;
 
 use peristalsis_formats::atomic::{self, Pending};
 use peristalsis_run::{
@@ -14,9 +14,9 @@ use peristalsis_run::{
 use serde_json::json;
 
 pub(crate) use self::arguments::RenderArguments;
-use self::arguments::{Origin, ViewName};
+use self::arguments::{FRAMES_PER_SECOND, Origin, ViewName};
 use crate::choice::Format;
-use crate::commands::{counted, packing, print, refuse_loss, say, say_if_replaced};
+use crate::commands::{counted, packing, print, refuse_loss, rounded, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::stop::Stop;
@@ -39,7 +39,8 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     let out = arguments.out.clone().unwrap_or_else(usual);
     refuse_loss(&out, folder.files())?;
     if arguments.view == ViewName::SpaceTime {
-        return finish_picture(arguments, &out, format, &space_time(&run)?);
+        let diagram = space_time(&run)?;
+        return finish_picture(arguments, &out, format, (&diagram, None));
     }
     let middle = 0.5 * run.simulation().wall().length();
     let look = arguments.look(format.film().is_some(), middle);
@@ -47,7 +48,9 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
         return make_film(arguments, run, look, film, &out, &stop);
     }
     match still(arguments, run, look, &stop)? {
-        Some(drawing) => finish_picture(arguments, &out, format, &drawing),
+        Some((drawing, instant)) => {
+            finish_picture(arguments, &out, format, (&drawing, Some(instant)))
+        }
         None => Ok(stop.exit_code()),
     }
 }
@@ -100,6 +103,18 @@ fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
     let is_film = format.film().is_some();
     let is_placed = arguments.place.is_some() || arguments.position.is_some();
     let (has_window, has_duration) = (arguments.window.is_some(), arguments.duration.is_some());
+    let has_rate = arguments.every.is_some() || arguments.fps.is_some();
+    let is_from_side =
+        arguments.wall.is_some() || arguments.eye.is_some() || arguments.waves.is_some();
+    let is_of_frame = arguments.colour.is_some()
+        || arguments.range.is_some()
+        || arguments.contacts
+        || arguments.paper.is_some()
+        || arguments.bare
+        || arguments.width.is_some()
+        || arguments.at.is_some()
+        || arguments.from.is_some()
+        || arguments.trajectory.is_some();
     let is_from_state = arguments.from == Some(Origin::State);
     let reads_file = matches!(arguments.from, None | Some(Origin::Trajectory));
     let refusals = [
@@ -114,13 +129,23 @@ fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
             "add --view section",
         ),
         (
+            is_from_side && arguments.view != ViewName::Side,
+            "--wall, --eye and --waves are those of a view from the side",
+            "leave them out, or take --view side",
+        ),
+        (
+            is_of_frame && arguments.view == ViewName::SpaceTime,
+            "the space-time diagram shows all times at once, and has its own colours and size",
+            "leave out --colour, --range, --contacts, --paper, --bare, --width, --at, --from and --trajectory",
+        ),
+        (
             is_film && arguments.at.is_some(),
             "--at is the instant of a picture",
             "a film has a --window FROM:TO",
         ),
         (
-            !is_film && (has_window || has_duration || arguments.every.is_some()),
-            "--window, --duration and --every are those of a film",
+            !is_film && (has_window || has_duration || has_rate),
+            "--window, --duration, --every and --fps are those of a film",
             "add --film",
         ),
         (
@@ -164,13 +189,16 @@ fn trajectory(arguments: &RenderArguments, look: Look) -> Result<Option<PathBuf>
     Ok(Some(path))
 }
 
+/// The instant of a picture: its time \[t\], and the same in periods of the drive where the wave moves.
+type Instant = (f64, Option<f64>);
+
 /// The picture of an instant; `None` where it was given up on the way.
 fn still(
     arguments: &RenderArguments,
     run: Run,
     look: Look,
     stop: &Stop,
-) -> Result<Option<Drawing>, Failure> {
+) -> Result<Option<(Drawing, Instant)>, Failure> {
     let with_contacts = look.needs_contacts();
     // Where nothing is said the picture is of the saved state.
     let is_of_state = matches!(arguments.from, Some(Origin::State))
@@ -226,10 +254,13 @@ fn start_of(run: &Run) -> Result<Run, Failure> {
     })
 }
 
-/// The picture of the last of some frames.
-fn draw(run: &Run, look: Look, frames: &[Frame]) -> Result<Drawing, RunError> {
+/// The picture of the last of some frames, and its instant.
+fn draw(run: &Run, look: Look, frames: &[Frame]) -> Result<(Drawing, Instant), RunError> {
     let last = &frames[frames.len() - 1];
-    PictureScene::new(run, look, frames)?.draw(last)
+    let drawing = PictureScene::new(run, look, frames)?.draw(last)?;
+    let period = run.configuration().drive.period();
+    let instant = (last.time, period.map(|period| last.time / period));
+    Ok((drawing, instant))
 }
 
 fn request(every: Option<Span>, window: Window) -> TrajectoryRequest {
@@ -270,7 +301,7 @@ fn make_film(
     out: &Path,
     stop: &Stop,
 ) -> Result<ExitCode, Failure> {
-    let start = Instant::now();
+    let start = time::Instant::now();
     format.available().map_err(RunError::from)?;
     let drawn = run.clone();
     let mut source = frames(arguments, run, look)?;
@@ -288,7 +319,7 @@ fn make_film(
     let scene = PictureScene::new(&drawn, look, &source.samples()?)?;
     let plan = FilmPlan {
         frames: source.frames() as u32,
-        frames_per_second: arguments.fps,
+        frames_per_second: arguments.fps.unwrap_or(FRAMES_PER_SECOND),
         paper: look.paper.srgb(),
     };
     say_if_replaced(out);
@@ -319,7 +350,7 @@ fn make_film(
     film.finish().map_err(RunError::from)?;
     display.finish();
     pending.commit().map_err(RunError::from)?;
-    report(arguments, out, size, total)
+    report(arguments, out, size, (total, None))
 }
 
 /// The pixels of a page.
@@ -333,7 +364,7 @@ fn finish_picture(
     arguments: &RenderArguments,
     out: &Path,
     format: Format,
-    drawing: &Drawing,
+    (drawing, instant): (&Drawing, Option<Instant>),
 ) -> Result<ExitCode, Failure> {
     let bytes = match format {
         Format::Svg => drawing.svg().into_bytes(),
@@ -342,26 +373,35 @@ fn finish_picture(
     say_if_replaced(out);
     atomic::write(out, &bytes).map_err(RunError::from)?;
     let [width, height] = drawing.size();
-    report(arguments, out, (width, height), 1)
+    report(arguments, out, (width, height), (1, instant))
 }
 
 fn report(
     arguments: &RenderArguments,
     out: &Path,
     (width, height): (u32, u32),
-    frames: u64,
+    (frames, instant): (u64, Option<Instant>),
 ) -> Result<ExitCode, Failure> {
     let out = out.display();
+    let of_instant = match instant {
+        Some((time, Some(periods))) => {
+            format!(" of t = {} ({periods:.2} periods)", rounded(time))
+        }
+        Some((time, None)) => format!(" of t = {}", rounded(time)),
+        None => String::new(),
+    };
     let text = if arguments.json {
         let made = json!({
             "files": [out.to_string()],
             "width": width,
             "height": height,
             "frames": frames,
+            "time": instant.map(|(time, _)| time),
+            "periods": instant.and_then(|(_, periods)| periods),
         });
         format!("{made:#}\n")
     } else if frames == 1 {
-        format!("{width} x {height} pixels: {out}\n")
+        format!("{width} x {height} pixels{of_instant}: {out}\n")
     } else {
         format!(
             "{} of {width} x {height} pixels: {out}\n",

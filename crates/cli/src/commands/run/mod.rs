@@ -25,12 +25,14 @@ use crate::stop::Stop;
 
 pub(crate) use self::words::{DISCHARGE, MASS_FLOW, measured};
 use self::words::{how_far, in_words};
-use self::work::{Ending, Work};
+use self::work::{Ending, Work, goes_on_as_begun};
 
 /// Where runs go that are given no folder.
 pub(crate) const RUNS: &str = "runs";
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+    check_instructions(arguments)?;
+    check_frames(arguments)?;
     if let Some(replicates) = replicates::replicates(arguments)? {
         return replicates::run(arguments, replicates);
     }
@@ -94,18 +96,32 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
 }
 
+/// Refuses instructions that this machine lacks, before anything is made.
+fn check_instructions(arguments: &RunArguments) -> Result<(), Failure> {
+    if arguments.instructions.is_none_or(Instructions::available) {
+        return Ok(());
+    }
+    Err(Failure::usage(
+        "this machine does not have the instructions that --instructions asks for",
+        "leave it out: the widest that there are is the default",
+    ))
+}
+
+/// Refuses frames that no trajectory can have: those of one that goes on stay as they were.
+fn check_frames(arguments: &RunArguments) -> Result<(), Failure> {
+    match &arguments.resume {
+        Some(folder)
+            if arguments.out.is_none() && arguments.frames.asks() && Trajectory::is_in(folder) =>
+        {
+            Err(goes_on_as_begun(folder))
+        }
+        _ => request(&arguments.frames).map(drop),
+    }
+}
+
 /// Takes the instructions and threads asked for, where so many processors are free.
 fn compute_with(arguments: &RunArguments, run: &mut Run, processors: usize) -> Result<(), Failure> {
-    let instructions = match arguments.instructions {
-        None => Instructions::widest(),
-        Some(wanted) if wanted.available() => wanted,
-        Some(_) => {
-            return Err(Failure::usage(
-                "this machine does not have the instructions that --instructions asks for",
-                "leave it out: the widest that there are is the default",
-            ));
-        }
-    };
+    let instructions = arguments.instructions.unwrap_or_default();
     let threads = threads_of(arguments.threads, run, processors);
     Ok(run.compute_with(instructions, threads)?)
 }
@@ -156,7 +172,7 @@ fn checked(
     if configuration.initial.state == InitialState::Placed {
         return Err(locate(RunError::NotPlaced, &arguments.configuration));
     }
-    if let Some(request) = request(&arguments.frames) {
+    if let Some(request) = request(&arguments.frames)? {
         TrajectoryPlan::new(&request, &configuration, 0, configuration.run.steps())?;
     }
     say_which_periods(arguments, &configuration);

@@ -235,8 +235,10 @@ fn mixing(run: &Run, summary: &Summary) -> String {
 
 /// Where large grains gather, if not by chance.
 fn segregation(run: &Run, summary: &Summary) -> String {
-    let grains = run.configuration().grains.number as f64;
-    let by_chance = 2.0 / (grains - 1.0).sqrt();
+    let late = run.recorder().late(run.late_fraction());
+    // Of an open tube those that are in it count.
+    let inside = late.iter().map(|sample| sample.inside).sum::<f64>() / late.len() as f64;
+    let by_chance = 2.0 / (inside - 1.0).sqrt();
     let sizes = summary.segregated;
     let places = [
         (sizes.radial, ["near the wall", "near the axis"]),

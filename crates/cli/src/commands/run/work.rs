@@ -162,14 +162,10 @@ fn open_trajectory(
     folder: &Path,
     run: &mut Run,
 ) -> Result<Option<Trajectory>, Failure> {
-    let request = request(&arguments.frames);
+    let request = request(&arguments.frames)?;
     let there = Trajectory::resume(folder, run)?;
     match (there, request) {
-        (Some(_), Some(_)) => {
-            let folder = folder.display();
-            let reason = format!("{folder} has a trajectory, which goes on as it was begun");
-            Err(Failure::usage(reason, "leave out --trajectory"))
-        }
+        (Some(_), Some(_)) => Err(goes_on_as_begun(folder)),
         (None, Some(request)) => {
             let (now, end) = (run.simulation().step(), run.configuration().run.steps());
             let plan = TrajectoryPlan::new(&request, run.configuration(), now, end)?;
@@ -177,4 +173,13 @@ fn open_trajectory(
         }
         (there, None) => Ok(there),
     }
+}
+
+/// A trajectory that is asked for of a run that has one.
+pub(super) fn goes_on_as_begun(folder: &Path) -> Failure {
+    let folder = folder.display();
+    Failure::usage(
+        format!("{folder} has a trajectory, which goes on as it was begun"),
+        "leave out --trajectory, --trajectory-every and --trajectory-window",
+    )
 }

@@ -123,6 +123,20 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
     Ok(Viewer::play(recording, name(folder), port)?)
 }
 
+/// Refuses what is for the folder of a run alone.
+fn check(arguments: &ViewArguments) -> Result<(), Failure> {
+    match arguments.live || arguments.from_state {
+        true => Err(Failure::usage(
+            format!(
+                "--live and --from-state are for the folder of a run, and {} is none",
+                arguments.source.display()
+            ),
+            "leave them out, or name such a folder",
+        )),
+        false => Ok(()),
+    }
+}
+
 /// The run to show, and how to serve it.
 fn open(arguments: &ViewArguments, stop: &Stop) -> Result<(Run, Options), Failure> {
     let packed = |configuration: Configuration| {
@@ -153,6 +167,7 @@ fn open(arguments: &ViewArguments, stop: &Stop) -> Result<(Run, Options), Failur
         let unknown = format!("{source} is no folder, no file and no preset");
         return Err(Failure::usage(unknown, known_presets()));
     }
+    check(arguments)?;
     let configuration = ConfigurationArguments {
         file: named.is_none().then(|| arguments.source.clone()),
         preset: named.map(str::to_owned),

@@ -222,7 +222,7 @@ fn a_complete_run_is_lengthened_to_the_run_that_was_asked_for_at_once() {
         place.refuses("run --resume on", &["it is complete", "--periods"]);
         let before = place.inventory();
         let less = format!("run --resume on --periods {unit}");
-        place.refuses(&less, &["has done", "periods already"]);
+        place.refuses(&less, &["has done", "periods already", "in whole samples"]);
         assert_eq!(place.inventory(), before);
         place.does(&format!("run --resume on --periods {long}"));
         place.does(&format!("{run} --out whole run.periods={long}"));

@@ -187,6 +187,15 @@ fn messages_say_one_thing_once_and_in_few_digits() {
         "check SMALL grains.number=1.5",
         &["grains.number = 1.5 is not a whole number"],
     );
+    let large = refused(
+        "check SMALL grains.number=1e9",
+        &[
+            "grains.number = 1000000000 is too large",
+            "allowed: a whole number",
+        ],
+    );
+    assert!(!large.contains("is not a whole number"), "{large}");
+    refused("check SMALL grains.number=1e1", &["write 10"]);
     refused("check SMALL --set drive=3", &["drive = 3 is not a table"]);
     refused(
         "check SMALL contact.stiffness=2",
