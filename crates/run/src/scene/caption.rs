@@ -54,9 +54,14 @@ impl Caption {
                 (words, 2.0 * (scene.radius + MARGIN))
             }
         };
-        // Gravity across the tube points down in every picture.
-        let gravity = scene.down.map(|_| "*g* ↓".to_owned());
-        let words = [place].into_iter().chain(gravity);
+        // Gravity across the tube points down in every picture, and the wave runs to the right in one from the side.
+        let across_tube = scene.down.map(|_| "*g* ↓".to_owned());
+        let along_tube = match (scene.look.aspect, scene.along) {
+            (Aspect::Side, along) if along > 0.0 => Some("*g* →".to_owned()),
+            (Aspect::Side, along) if along < 0.0 => Some("*g* ←".to_owned()),
+            _ => None,
+        };
+        let words = [place].into_iter().chain(across_tube).chain(along_tube);
         let words: Vec<String> = words.filter(|words| !words.is_empty()).collect();
         let place = words.join(",   ");
         let instant = instant(frame.time, scene.period, scene.units);

@@ -187,6 +187,8 @@ pub struct PictureScene {
     period: Option<f64>,
     /// Direction of gravity across the tube; `None` without any there.
     down: Option<DVec3>,
+    /// Gravity's part along the wave \[d/t^2\].
+    along: f64,
     /// Distance from the axis that is shown \[d\].
     radius: f64,
     /// Length of the tube that is shown \[d\].
@@ -219,6 +221,7 @@ impl PictureScene {
             units,
             period: run.configuration().drive.period(),
             down: down(run.configuration()),
+            along: run.configuration().heading() * run.configuration().body.gravity[2],
             forces,
             radius: shown_radius(&wall, first, samples),
             wall,
