@@ -61,7 +61,7 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>, collapsed: Option<&Collapsed>
     let exponents: Vec<Uncertain> = exponents.into_iter().map(|one| one.1).collect();
     let mean = weighted_mean(&exponents);
     let amplitudes = at_rates(one.near(), |near| near.variance_amplitude(EXPONENT));
-    let power = power_of_rate(&amplitudes);
+    let power = fitted_power(amplitudes.iter().copied());
     let scales = all_hold(&[
         power.and_then(|power| agrees(&power, AMPLITUDE)),
         collapsed.and_then(Collapsed::agrees),

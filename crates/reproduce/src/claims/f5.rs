@@ -307,7 +307,7 @@ fn against_length(rows: &[Row<'_>]) -> Option<Uncertain> {
             let moment = Moment::of(width, &rows, rows[0].number("transition_threshold"))?;
             moment.jams.then(|| (waves, moment.height()))
         };
-        power_of_rate(&lengths.filter_map(peak).collect::<Vec<_>>())
+        fitted_power(lengths.filter_map(peak))
     };
     weighted_mean(&widths.filter_map(power).collect::<Vec<_>>())
 }

@@ -110,13 +110,13 @@ impl<'a> Outcome<'a> {
 
     /// Largest part of the grains outside, and the forces at which too many are, in words.
     fn outside(&self) -> String {
-        let escaped = self.rows.iter().map(Row::escaped_fraction);
+        let escaped = largest(&self.rows, Row::escaped_fraction);
         let left_out: Vec<f64> = grouped(self.rows.iter(), |row| row.force())
             .into_iter()
             .map(|(force, _)| force)
             .filter(|force| self.tight.iter().all(|row| row.force() != *force))
             .collect();
-        outside(escaped.fold(0.0, f64::max), &left_out)
+        outside(escaped, &left_out)
     }
 
     /// Runs from jammed in which the jam gave way, of all: S2.

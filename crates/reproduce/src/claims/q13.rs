@@ -38,11 +38,7 @@ impl Place {
         let held = first.volume_fraction() * radius * radius;
         let geometric = radius * radius + 0.5 * amplitude * amplitude;
         let part = held / geometric;
-        let most = |column| {
-            rows.iter()
-                .map(|row| row.number(column))
-                .fold(0.0, f64::max)
-        };
+        let most = |column| largest(rows, |row| row.number(column));
         Some(Self {
             occlusion: 1.0 - width / (2.0 * radius),
             width,

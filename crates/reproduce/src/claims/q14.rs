@@ -159,10 +159,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let Some((duty, pressed)) = by_duty.last() else {
         return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
     };
-    let most = |column| {
-        let numbers = pressed.iter().map(|row| row.number(column));
-        numbers.fold(0.0, f64::max)
-    };
+    let most = |column| largest(pressed, |row| row.number(column));
     let overlap = number(most("largest_overlap"), 2);
     let often = number(100.0 * most("pressed"), 0);
     let (segments, waves) = (segments(of_segments), waves(of_waves));

@@ -173,7 +173,7 @@ impl Candidate {
             name,
             density: first.wall_density(),
             slope: line.map(|line| line.line.slope),
-            power: power_of_rate(&amplitudes),
+            power: fitted_power(amplitudes),
             escaped,
         })
     }
@@ -215,13 +215,8 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
     found.sort_by(|one, other| one.density.total_cmp(&other.density));
     for one in &found {
         let wall = &one.name;
-        let slope = one.slope;
-        let slope = slope.map(|ours| PROSE.quantity("slope", values!(wall), ours));
-        let power = one.power;
-        let power = power.map(|ours| PROSE.quantity("power", values!(wall), ours));
-        let quantities = &mut draft.finding.quantities;
-        quantities.extend(slope.map(|slope| slope.sourced(SLOPE)));
-        quantities.extend(power.map(|power| power.sourced(AMPLITUDE)));
+        draft.compared("slope", values!(wall), one.slope, SLOPE);
+        draft.compared("power", values!(wall), one.power, AMPLITUDE);
     }
     let has_slope = |one: &Candidate| one.slope.and_then(|ours| agrees(&ours, SLOPE));
     let has_power = |one: &Candidate| one.power.and_then(|ours| agrees(&ours, AMPLITUDE));
@@ -234,12 +229,9 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
         }
     };
     let (slopes, powers) = (named(&has_slope), named(&has_power));
-    let all = found.iter().filter_map(|one| one.power);
-    let [least, most] = all.fold(
-        [f64::INFINITY, f64::NEG_INFINITY],
-        |[least, most], power| [least.min(power.value), most.max(power.value)],
-    );
-    let [least, most] = [least, most].map(|power| number(power, 1));
+    let powers_found = found.iter().filter_map(|one| one.power);
+    let [least, most] =
+        extremes(powers_found.map(|power| power.value)).map(|power| number(power, 1));
     draft.paragraph("candidates", values!(slopes, powers, least, most));
     let by_length = Candidate::of(PROSE.text("by length", &[]), waves);
     if let Some(one) = &by_length {

@@ -68,11 +68,7 @@ fn efficiency(point: &Point<'_>) -> Option<Uncertain> {
 
 /// Largest part of the grains outside in any of these runs.
 fn outside(point: &Point<'_>) -> f64 {
-    point
-        .rows
-        .iter()
-        .map(Row::escaped_fraction)
-        .fold(0.0, f64::max)
+    largest(&point.rows, Row::escaped_fraction)
 }
 
 /// Time that a grain takes through one wavelength, in periods of the wave.
