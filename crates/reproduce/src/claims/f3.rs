@@ -41,7 +41,6 @@ fn power_at(one: &OnWall<Line<'_>>, distance: f64) -> Option<Uncertain> {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let mut found: Vec<(String, Collapsed)> = Vec::new();
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut amplitudes) = (Vec::new(), Vec::new());
@@ -74,9 +73,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         amplitudes.push((one.name.clone(), known));
         found.extend(collapsed.map(|collapsed| (one.name, collapsed)));
     }
-    let judgement = Judgement::of(parts, &needed);
+    let judgement = Judgement::of(parts, &CLAIM.needed);
     if rows.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let summary = PROSE.text("summary", &[]);
     if let Some((least, most)) = ends(powers.into_iter()) {

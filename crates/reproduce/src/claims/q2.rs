@@ -17,7 +17,8 @@ const STUDIES: &[&str] = &[
     "wavelength",
 ];
 
-pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q2", PROSE, STUDIES, examine).varying("width", Q2_NEEDED);
 
 /// How deep a grain sinks between three wall spheres \[d\], all of one diameter: d − (d² − s²)^{1/2}, s the circumradius of
 /// the triangle that two neighbours of a ring make with one of the next. Larger spacings than d let a grain through.
@@ -93,7 +94,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         walls.extend(of_rate);
     }
     if ends.is_empty() {
-        return Ok(PROSE.nothing(Statistics::default(), &Q2_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let verdict = Verdict::answered_if(lattices >= LEAST_LATTICES);
     let summary = PROSE.text("summary", values!(ends = ends.join(" and ")));
@@ -109,14 +110,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let of_one_speed = |row: &Row<'_>| (row.wave_speed() - 1.0).abs() < 1e-6;
     let mut waves = evidence.study("wavelength")?.rows();
     waves.retain(of_one_speed);
-    let mut others = evidence.study("walls")?.rows();
-    for study in ["walls-dense", "walls-drawn", "walls-sought"] {
-        others.extend(evidence.study(study)?.rows());
-    }
+    let others = evidence.rows(&["walls", "walls-dense", "walls-drawn", "walls-sought"])?;
     candidates(&mut draft, others, &waves);
     draft.table("lattices", &[], walls.iter().map(Wall::row));
     draft.chart("roughness", &[], ChartFigure::new(panel))?;
-    Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// Waves in the tubes of the presets, and the volume fraction of their grains.

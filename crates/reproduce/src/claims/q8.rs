@@ -7,7 +7,8 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("q8.md"));
 const STUDIES: &[&str] = &["small-speed-size", "sweep-up", "sweep-down"];
 
-pub(super) const CLAIM: Claim = Claim::new("Q8", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q8", PROSE, STUDIES, examine).varying("force", Q8_NEEDED);
 
 /// Part of the runs, at their end, over which the study takes its means.
 const LATE: f64 = 0.5;
@@ -248,12 +249,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         ..Statistics::weakest(of_sizes)
     };
     if rates.is_empty() {
-        return Ok(PROSE.nothing(statistics, &Q8_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     }
     let words: Vec<String> = rates.iter().map(AtRate::words).collect();
     let verdict = Verdict::answered_if(rates.iter().all(AtRate::is_complete));
     let summary = format!("{}.", words.join(". "));
-    let mut draft = Draft::of(PROSE).varying("force");
+    let mut draft = Draft::of(PROSE);
     for at in &rates {
         at.add_quantities(&mut draft);
     }
@@ -285,5 +286,5 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .legend(LegendPlace::Below);
         draft.chart("small-speed", values!(passed), chart)?;
     }
-    Ok(draft.concluded(verdict, summary, statistics, &Q8_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
