@@ -35,63 +35,27 @@ impl Bootstrap {
     }
 }
 
-/// Estimates from resampled data.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Resampled {
-    /// The estimates with their bootstrap errors and percentile intervals.
-    pub estimates: Vec<Uncertain>,
-    /// Resamples that gave estimates.
-    pub succeeded: usize,
-    /// Resamples that did not, such as those left without a transition. Where these are more than a few, the intervals
-    /// are too short.
-    pub failed: usize,
-}
-
 /// Bootstrap errors of any N numbers computed from a sample of independent things.
 ///
 /// Things are drawn with replacement, as many as there are. `statistic` gives the numbers of a sample, first of the data
-/// themselves, or `None` where they cannot be had; an infinite number counts in the intervals, so that they end there.
+/// themselves, or `None` where they cannot be had, so that this sample is left out; an infinite number counts in the
+/// intervals, so that they end there.
 pub(crate) fn bootstrap_errors<T: Clone, const N: usize>(
     sample: &[T],
     bootstrap: Bootstrap,
     mut statistic: impl FnMut(&[T]) -> Option<[f64; N]>,
-) -> Result<Resampled, Error> {
+) -> Result<Vec<Uncertain>, Error> {
     let values = statistic(sample).ok_or(Error::undetermined(sample.len(), N))?;
-    let estimates = bootstrap.streams()?.map(|mut randomness| {
-        let drawn = randomness.resample(sample);
-        statistic(&drawn).map(|numbers| numbers.to_vec())
-    });
-    summarise(&values, estimates)
-}
-
-/// Errors of values from estimates of the same numbers; those that failed are `None`.
-fn summarise(
-    values: &[f64],
-    estimates: impl Iterator<Item = Option<Vec<f64>>>,
-) -> Result<Resampled, Error> {
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); values.len()];
-    let (mut succeeded, mut failed) = (0, 0);
-    for estimate in estimates {
-        let Some(numbers) = estimate else {
-            failed += 1;
-            continue;
-        };
-        succeeded += 1;
-        for (column, number) in columns.iter_mut().zip(numbers) {
-            column.push(number);
-        }
-    }
-    enough_resamples(succeeded)?;
-    let errors_of = |(&value, column): (&f64, &Vec<f64>)| {
-        Uncertain::from_bootstrap(value, column).ok_or(too_few_resamples(succeeded))
+    let resampled = bootstrap.streams()?;
+    let resampled = resampled.filter_map(|mut randomness| statistic(&randomness.resample(sample)));
+    let resampled: Vec<[f64; N]> = resampled.collect();
+    enough_resamples(resampled.len())?;
+    let with_error = |k: usize| {
+        let column: Vec<f64> = resampled.iter().map(|numbers| numbers[k]).collect();
+        let found = Uncertain::from_bootstrap(values[k], &column);
+        found.ok_or(too_few_resamples(resampled.len()))
     };
-    let estimates = values.iter().zip(&columns).map(errors_of);
-    let estimates = estimates.collect::<Result<_, _>>()?;
-    Ok(Resampled {
-        estimates,
-        succeeded,
-        failed,
-    })
+    (0..N).map(with_error).collect()
 }
 
 fn enough_resamples(found: usize) -> Result<(), Error> {
@@ -169,9 +133,9 @@ mod tests {
         let bootstrap = Bootstrap::new(200, 1);
         let mean = |sample: &[f64]| Some([mean_of(sample)]);
         let found = bootstrap_errors(&[1.0, 2.0, 3.0, 4.0], bootstrap, mean).unwrap();
-        assert_eq!(found.estimates[0].value, 2.5);
+        assert_eq!(found[0].value, 2.5);
         // sqrt(5/16), the variance of the mean with divisor n.
-        assert!((found.estimates[0].error - 0.559).abs() < 0.06);
+        assert!((found[0].error - 0.559).abs() < 0.06);
     }
 
     #[test]

@@ -77,7 +77,6 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
     };
     let sorted: Vec<Vec<CurvePoint>> = curves.iter().map(sorted).collect();
     let mut sum = 0.0;
-    let mut compared = 0_usize;
     for (own, curve) in sorted.iter().enumerate() {
         for point in curve {
             let mut line = Line::default();
@@ -90,17 +89,17 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
             if let Some((height, variance)) = line.at_origin() {
                 let distance = point.y - height;
                 sum += distance * distance / (point.error * point.error + variance);
-                compared += 1;
             }
         }
     }
+    let (compared, is_connected) = overlap(curves);
     let (needed, found) = (0.0, 0.0);
     ensure(compared > 0, Error::NoOverlap { needed, found })?;
     Ok(CollapseQuality {
         quality: sum / compared as f64,
         overlap: compared as f64 / total as f64,
         compared,
-        is_connected: overlap(curves).1,
+        is_connected,
     })
 }
 

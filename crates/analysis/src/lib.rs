@@ -65,7 +65,7 @@ mod uncertain;
 
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{Estimate, mean_with_error};
-pub use bootstrap::{Bootstrap, Resampled};
+pub use bootstrap::Bootstrap;
 pub use collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
 pub use collapse_estimate::{CollapseEstimate, JointTest};
 pub use collapse_fit::{Collapse, Transform};

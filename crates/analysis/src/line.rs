@@ -4,8 +4,8 @@ use crate::columns::distinct;
 use crate::error::{Error, check_points, checked_positive, enough_places};
 use crate::numerics::gamma::{chi_squared_tail, two_sided_tail};
 use crate::numerics::linear::{LeastSquares, error_of, least_squares};
-use crate::numerics::student::{quantile, two_sided_tail as student_tail};
-use crate::uncertain::{Interval, NARROW_TAIL, Uncertain, WIDE_TAIL};
+use crate::numerics::student::two_sided_tail as student_tail;
+use crate::uncertain::Uncertain;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -200,17 +200,7 @@ pub fn fit_line_to_scatter(x: &[f64], y: &[f64], error: &[f64]) -> Result<Scatte
     let total = scattered_errors(x, y, error)?;
     let mut line = fit_line(x, y, &total)?;
     let freedom = line.degrees_of_freedom;
-    let student = |one: Uncertain| {
-        let within = |tail| {
-            let reach = one.error * quantile(tail, freedom);
-            Interval::new(one.value - reach, one.value + reach)
-        };
-        Uncertain {
-            interval_68: within(NARROW_TAIL),
-            interval_95: within(WIDE_TAIL),
-            ..one
-        }
-    };
+    let student = |one: Uncertain| Uncertain::student(one.value, one.error, freedom);
     (line.intercept, line.slope) = (student(line.intercept), student(line.slope));
     let weight: Vec<f64> = total.iter().map(|error| 1.0 / (error * error)).collect();
     let mean = centre(y, &weight);

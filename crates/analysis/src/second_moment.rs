@@ -104,7 +104,7 @@ pub fn second_moment_peak<S: AsRef<[f64]>>(
         heights.push(value);
         Some([index as f64, value])
     })?;
-    let (index, value) = (found.estimates[0], found.estimates[1]);
+    let (index, value) = (found[0], found[1]);
     let at_peak = moments[index.value as usize].runs as f64;
     // What resamples estimate: the runs are all that they draw from, and their variance has the divisor n.
     let drawn_from = value.value * (1.0 - 1.0 / at_peak);

@@ -13,9 +13,9 @@ pub(crate) const NARROW: f64 = 1.0;
 /// Standard deviations of the wide interval: 95 per cent.
 pub(crate) const WIDE: f64 = 1.959_963_984_540_054;
 /// Probability to either side of the narrow interval.
-pub(crate) const NARROW_TAIL: f64 = 0.158_655_253_931_457;
+const NARROW_TAIL: f64 = 0.158_655_253_931_457;
 /// Probability to either side of the wide interval.
-pub(crate) const WIDE_TAIL: f64 = 0.025;
+const WIDE_TAIL: f64 = 0.025;
 
 /// Confidence interval; a side that the data leave open is infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -160,7 +160,8 @@ impl Uncertain {
     }
 
     /// An increasing function of the number, with a given standard error.
-    pub(crate) fn map(self, error: f64, function: impl Fn(f64) -> f64) -> Self {
+    #[must_use]
+    pub fn map(self, error: f64, function: impl Fn(f64) -> f64) -> Self {
         Self {
             value: function(self.value),
             error,

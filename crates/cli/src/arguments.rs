@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
-use peristalsis_configuration::PRESETS;
+use peristalsis_configuration::preset_names;
 use peristalsis_engine::Instructions;
 use peristalsis_reproduce::textbook::CASES;
 use peristalsis_reproduce::{CLAIMS, Extent};
@@ -364,7 +364,7 @@ pub(crate) struct CompletionsArguments {
 
 /// The names of the presets.
 fn presets() -> PossibleValuesParser {
-    PossibleValuesParser::new(PRESETS.iter().map(|preset| preset.name))
+    PossibleValuesParser::new(preset_names())
 }
 
 /// How many rows are computed again.

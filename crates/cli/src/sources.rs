@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use peristalsis_configuration::{Configuration, PRESETS, SourceFile, Sources, preset};
+use peristalsis_configuration::{Configuration, SourceFile, Sources, preset, preset_names};
 use peristalsis_engine::EngineError;
 use peristalsis_reproduce::design::is_design;
 use peristalsis_run::RunError;
@@ -127,8 +127,7 @@ fn text_of(path: &Path) -> std::io::Result<String> {
 
 /// The names of all presets, as help.
 pub(crate) fn known_presets() -> String {
-    let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-    format!("presets: {}", names.join(", "))
+    format!("presets: {}", preset_names().join(", "))
 }
 
 /// Keys that say how many grains there are.

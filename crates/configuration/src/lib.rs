@@ -62,7 +62,7 @@ pub use peristalsis_physics::sizes::{SizeForm, Sizes};
 pub use peristalsis_physics::wall::{
     Arrangement, DriveAngle, ElasticNetwork, NetForce, SegmentDrive, Tethers, WaveDirection,
 };
-pub use presets::{PRESETS, Preset, preset};
+pub use presets::{PRESETS, Preset, preset, preset_names};
 pub use reference::reference;
 pub use resolve::{file_keys, file_of};
 pub use schedule::{Schedule, ScheduledParameter};

@@ -35,6 +35,11 @@ pub const PRESETS: &[Preset] = &[
     preset!("oesophagus", "Two boluses of wet grains in a lying elastic tube that a travelling force squeezes, in SI units."),
 ];
 
+/// The names of all presets.
+pub fn preset_names() -> Vec<&'static str> {
+    PRESETS.iter().map(|preset| preset.name).collect()
+}
+
 /// The preset of a name.
 pub fn preset(name: &str) -> Option<&'static Preset> {
     PRESETS.iter().find(|preset| preset.name == name)

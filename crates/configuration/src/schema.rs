@@ -11,7 +11,7 @@ use serde_json::{Map, Value, json};
 use crate::configuration::Control;
 use crate::keys::{Keys, exclusive_groups};
 use crate::materials::MATERIALS;
-use crate::presets::PRESETS;
+use crate::presets::preset_names;
 
 /// JSON schema (draft 2020-12) of a configuration file.
 ///
@@ -136,7 +136,7 @@ fn build() -> Value {
     tidy(&mut schema);
     complete(&mut schema);
     schema["title"] = json!("peristalsis configuration");
-    let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+    let names = preset_names();
     schema["properties"]["preset"] = json!({
         "type": "string",
         "enum": names,

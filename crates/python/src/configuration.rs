@@ -3,7 +3,7 @@
 use std::hash::{Hash, Hasher};
 
 use peristalsis_command::not_of_one_run;
-use peristalsis_configuration::{PRESETS, SourceFile, Sources};
+use peristalsis_configuration::{SourceFile, Sources, preset_names};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyTuple};
@@ -492,5 +492,5 @@ impl Configuration {
 /// ['frictionless', 'frictionless-source', 'frictionless-fine', 'frictional', 'sand-pump', 'soft-robot', 'silo', 'oesophagus']
 #[pyfunction]
 pub(crate) fn presets() -> Vec<&'static str> {
-    PRESETS.iter().map(|preset| preset.name).collect()
+    preset_names()
 }

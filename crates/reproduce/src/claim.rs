@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::evidence::Evidence;
-use crate::finding::Finding;
+use crate::finding::{Finding, Statistics, Verdict};
 use crate::prose::Prose;
 use crate::walls::of_every_wall;
 
@@ -15,24 +15,53 @@ pub struct Claim {
     pub prose: Prose,
     /// Names of the studies that it needs, all of [`STUDIES`](crate::STUDIES); `branches-*` stands for that study of every wall.
     pub studies: &'static [&'static str],
-    /// What the evidence says.
-    pub examine: fn(&Evidence) -> Result<Finding>,
+    /// What the evidence says, whether or not it suffices.
+    pub finding: fn(&Evidence) -> Result<Finding>,
+    /// The runs that a verdict takes.
+    pub needed: Statistics,
+    /// The parameter that is varied at each strain rate: "width", "force", "friction", "bottleneck", "back pressure" or
+    /// "outlet".
+    pub varied: &'static str,
 }
 
 impl Claim {
-    /// A claim from what its file says.
-    pub(crate) const fn new(
+    /// A claim from what its file says: of widths, and with as many runs as the claims on walls of fixed spheres take.
+    pub const fn new(
         id: &'static str,
         prose: Prose,
         studies: &'static [&'static str],
-        examine: fn(&Evidence) -> Result<Finding>,
+        finding: fn(&Evidence) -> Result<Finding>,
     ) -> Self {
         Self {
             id,
             prose,
             studies,
-            examine,
+            finding,
+            needed: Statistics::FOR_A_VERDICT,
+            varied: "width",
         }
+    }
+
+    /// The same with the parameter that is varied, and the runs that a verdict takes.
+    #[must_use]
+    pub const fn varying(self, varied: &'static str, needed: Statistics) -> Self {
+        Self {
+            needed,
+            varied,
+            ..self
+        }
+    }
+
+    /// What the evidence says; the verdict is open where it does not suffice.
+    ///
+    /// # Errors
+    /// [`ReproduceError`](crate::ReproduceError) where a study is missing or its rows are wrong.
+    pub fn examine(&self, evidence: &Evidence) -> Result<Finding> {
+        let mut finding = (self.finding)(evidence)?;
+        if !finding.statistics.suffice(&self.needed) {
+            finding.verdict = Verdict::Open;
+        }
+        Ok(finding)
     }
 
     /// Names of the studies that it needs, those of every wall among them.

@@ -49,4 +49,12 @@ impl<'a, R> Columns<'a, R> {
     pub(crate) fn table(self) -> Result<Table, FormatError> {
         Table::builder().columns(self.columns).build()
     }
+
+    /// The table as what a finding holds for programs.
+    ///
+    /// # Errors
+    /// As [`Self::table`].
+    pub(crate) fn data(self) -> Result<Option<Table>, FormatError> {
+        self.table().map(Some)
+    }
 }

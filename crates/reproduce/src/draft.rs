@@ -20,18 +20,11 @@ impl Draft {
     /// With the sections `method` and `weaknesses` of the text, as far as these ask for no value.
     pub(crate) fn of(prose: Prose) -> Self {
         let finding = Finding {
-            varied: "width",
             paragraphs: prose.plain("method"),
             weaknesses: prose.plain("weaknesses"),
             ..Finding::default()
         };
         Self { prose, finding }
-    }
-
-    /// The same, with the parameter that is varied at each strain rate.
-    pub(crate) fn varying(mut self, varied: &'static str) -> Self {
-        self.finding.varied = varied;
-        self
     }
 
     /// Adds the number of a section `quantity: name`, where it is known.
@@ -99,29 +92,21 @@ impl Draft {
     /// The finding with the verdict of all walls; its summary begins with those on which it holds.
     pub(crate) fn judged(mut self, judgement: Judgement, summary: &str) -> Finding {
         let summary = format!("{}. {summary}", judgement.headline());
-        let (statistics, needed) = (judgement.statistics, judgement.needed);
         self.finding.walls = judgement.walls;
-        self.concluded(judgement.verdict, summary, statistics, &needed)
+        self.concluded(judgement.verdict, summary, judgement.statistics)
     }
 
-    /// The finding with its verdict, which is open where the statistics do not suffice.
+    /// The finding with its verdict.
     pub(crate) fn concluded(
         self,
         verdict: Verdict,
         summary: String,
         statistics: Statistics,
-        needed: &Statistics,
     ) -> Finding {
-        let is_sufficient = statistics.suffice(needed);
         Finding {
-            verdict: if is_sufficient {
-                verdict
-            } else {
-                Verdict::Open
-            },
+            verdict,
             summary,
             statistics,
-            needed: *needed,
             ..self.finding
         }
     }

@@ -84,19 +84,23 @@ fn stretched(value: f64, error: f64, ratio: f64, degrees_of_freedom: usize) -> U
     }
 }
 
-/// The power of the strain rate with which a number goes, its error stretched to the scatter; `None` with too few strain
-/// rates.
-pub(crate) fn power_of_rate(numbers: &[(f64, Uncertain)]) -> Option<Uncertain> {
-    line_of_rate(numbers).as_ref().map(slope)
+/// The power of another number, mostly the strain rate, with which one goes, its error stretched to the scatter; `None` with
+/// too few positive ones.
+pub(crate) fn fitted_power(
+    numbers: impl IntoIterator<Item = (f64, Uncertain)>,
+) -> Option<Uncertain> {
+    logarithmic_line(numbers).as_ref().map(slope)
 }
 
-/// The line of the logarithms of a number and of the strain rate; `None` with too few strain rates.
-pub(crate) fn line_of_rate(numbers: &[(f64, Uncertain)]) -> Option<LineFit> {
-    let known = numbers.iter().copied();
+/// The line of the logarithms of two numbers; `None` with too few positive ones.
+pub(crate) fn logarithmic_line(
+    numbers: impl IntoIterator<Item = (f64, Uncertain)>,
+) -> Option<LineFit> {
+    let known = numbers.into_iter();
     let known = known.filter(|(_, one)| one.value > 0.0 && one.error > 0.0);
-    let [rate, value, error] = columns(known, 0.0);
-    let line = power_exponent(&rate, &value, &error).ok()?;
-    (rate.len() >= LEAST_RATES).then_some(line)
+    let [x, value, error] = columns(known, 0.0);
+    let line = power_exponent(&x, &value, &error).ok()?;
+    (x.len() >= LEAST_RATES).then_some(line)
 }
 
 #[cfg(test)]

@@ -73,6 +73,12 @@ impl Evidence {
             .get(name)
             .ok_or_else(|| ReproduceError::NoSuchStudy(name.to_owned()))
     }
+
+    /// The finished runs of several studies, one study after the other.
+    pub(crate) fn rows(&self, studies: &[&str]) -> Result<Vec<Row<'_>>> {
+        let rows = studies.iter().map(|name| Ok(self.study(name)?.rows()));
+        Ok(rows.collect::<Result<Vec<_>>>()?.concat())
+    }
 }
 
 /// The first of some runs whose product was kept, with the product; `None` where no run's was.

@@ -6,7 +6,7 @@ use std::sync::mpsc;
 use crate::claim::Claim;
 use crate::error::ReproduceError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Statistics, Verdict};
+use crate::finding::{Finding, Verdict};
 
 /// An experiment, a claim or a textbook case, with its finding.
 #[derive(Clone, Debug)]
@@ -25,9 +25,11 @@ impl<E> Examination<E> {
         let (finding, failure) = match outcome {
             Ok(finding) => (finding, None),
             Err(reason) => {
-                let needed = &Statistics::FOR_A_VERDICT;
-                let nothing = "It could not be examined.";
-                let finding = Finding::nothing(nothing, Statistics::default(), needed);
+                let summary = "It could not be examined.".to_owned();
+                let finding = Finding {
+                    summary,
+                    ..Finding::default()
+                };
                 (finding, Some(reason))
             }
         };
@@ -38,14 +40,16 @@ impl<E> Examination<E> {
         }
     }
 
-    /// Whether there was enough for a verdict.
-    pub fn is_sufficient(&self) -> bool {
-        self.finding.statistics.suffice(&self.finding.needed)
-    }
-
     /// Whether the experiment agrees with its expectation.
     pub fn passed(&self) -> bool {
         self.finding.verdict == Verdict::Reproduced
+    }
+}
+
+impl Examination {
+    /// Whether there was enough for a verdict.
+    pub fn is_sufficient(&self) -> bool {
+        self.finding.statistics.suffice(&self.experiment.needed)
     }
 }
 
@@ -60,7 +64,7 @@ pub(crate) fn examine(
         for (place, claim) in claims {
             let sender = sender.clone();
             scope.spawn(move |_| {
-                let outcome = without_panic(|| (claim.examine)(evidence));
+                let outcome = without_panic(|| claim.examine(evidence));
                 // The receiver goes after the last answer.
                 let _ = sender.send((place, outcome));
             });

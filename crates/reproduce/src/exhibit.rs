@@ -9,6 +9,7 @@ use peristalsis_figures::{ColourScale, Quantity, Units, Width};
 
 use crate::branch::{Branch, Branches};
 use crate::critical::Line;
+use crate::row::extremes;
 use crate::thresholds::WINDOW;
 
 /// What stands in a cell without a value.
@@ -175,10 +176,8 @@ pub(crate) fn error_band(x: &[f64], value: &[f64], error: &[f64]) -> Band {
 
 /// Least and largest of some numbers; `None` where they do not differ.
 pub(crate) fn ends(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
-    let ends = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), x| {
-        (least.min(x), largest.max(x))
-    });
-    (ends.0 < ends.1).then_some(ends)
+    let [least, largest] = extremes(numbers);
+    (least < largest).then_some((least, largest))
 }
 
 /// Colours for values of the quantity with this label; `otherwise` are the ends of the scale where these do not differ.

@@ -155,11 +155,6 @@ pub struct Finding {
     pub summary: String,
     /// The runs behind it.
     pub statistics: Statistics,
-    /// The runs that a verdict takes.
-    pub needed: Statistics,
-    /// The parameter that is varied at each strain rate: "width", "force", "friction", "bottleneck", "back pressure" or
-    /// "outlet".
-    pub varied: &'static str,
     /// Numbers, the most important first.
     pub quantities: Vec<Quantity>,
     /// Numbers beside their expected values.
@@ -179,17 +174,6 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// A finding for which there are too few runs to say anything.
-    pub fn nothing(reason: &str, statistics: Statistics, needed: &Statistics) -> Self {
-        Self {
-            summary: reason.to_owned(),
-            statistics,
-            needed: *needed,
-            varied: "width",
-            ..Self::default()
-        }
-    }
-
     /// The verdict that follows from checks and orders alone; open where nothing was checked.
     pub(crate) fn verdict_of_checks(&self) -> Verdict {
         let all_pass = self.checks.iter().all(|check| check.passed)

@@ -115,8 +115,6 @@ pub(crate) struct Judgement {
     pub(crate) verdict: Verdict,
     /// The statistics of the wall that has most.
     pub(crate) statistics: Statistics,
-    /// What it takes.
-    pub(crate) needed: Statistics,
     /// The verdict on each wall.
     pub(crate) walls: Vec<WallVerdict>,
 }
@@ -154,7 +152,6 @@ impl Judgement {
         Self {
             verdict,
             statistics,
-            needed: *needed,
             walls,
         }
     }

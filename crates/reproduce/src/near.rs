@@ -112,10 +112,8 @@ impl Near {
     /// chi_tau itself the correction C would count twice. Elsewhere it is the power of chi_tau.
     pub(crate) fn variance_exponent(&self) -> Option<Uncertain> {
         let exponent = self.scatter_law()?.exponent;
-        // 2 without an error.
-        let twice = Uncertain::normal(-2.0, 0.0);
         Some(match self.judged() {
-            Some(_) => exponent - twice,
+            Some(_) => exponent.map(exponent.error, |relative| 2.0 + relative),
             None => exponent,
         })
     }

@@ -96,8 +96,12 @@ impl Prose {
     }
 
     /// A finding that says no more than the section `nothing`.
-    pub(crate) fn nothing(&self, statistics: Statistics, needed: &Statistics) -> Finding {
-        Finding::nothing(&self.text("nothing", &[]), statistics, needed)
+    pub(crate) fn nothing(&self, statistics: Statistics) -> Finding {
+        Finding {
+            summary: self.text("nothing", &[]),
+            statistics,
+            ..Finding::default()
+        }
     }
 
     /// A finding that holds the section `method` and nothing else yet.

@@ -353,12 +353,25 @@ pub(crate) fn ascending(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
     numbers
 }
 
+/// Least and largest of some numbers; infinite, and the largest below the least, without any.
+pub(crate) fn extremes(numbers: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    numbers.into_iter().fold(none, |[least, largest], number| {
+        [least.min(number), largest.max(number)]
+    })
+}
+
 /// Longest time that a run was given, in whole periods.
 pub(crate) fn longest<'b, 'a: 'b>(rows: impl IntoIterator<Item = &'b Row<'a>>) -> f64 {
-    rows.into_iter()
-        .map(|row| row.time() * row.strain_rate())
-        .fold(0.0, f64::max)
-        .round()
+    largest(rows, |row| row.time() * row.strain_rate()).round()
+}
+
+/// The largest value of a positive number of some runs; 0 without any.
+pub(crate) fn largest<'b, 'a: 'b>(
+    rows: impl IntoIterator<Item = &'b Row<'a>>,
+    number: impl Fn(&Row<'a>) -> f64,
+) -> f64 {
+    rows.into_iter().map(number).fold(0.0, f64::max)
 }
 
 /// The mean of the finite values in a column; its standard error is the larger of two: from the errors in the column of the

@@ -8,7 +8,7 @@ mod rows;
 use peristalsis_reproduce::{Evidence, Finding, STUDIES, Size, Start, Statistics, Verdict};
 use peristalsis_study::{Plan, Specification};
 
-use rows::{Rows, assert_says, evidence, examine, value};
+use rows::{Rows, assert_says, claim, evidence, examine, value};
 
 /// An elastic tube whose flow follows a given law.
 #[derive(Clone, Copy)]
@@ -291,7 +291,7 @@ fn verdicts_follow_the_law_of_the_tube() {
     for id in ALL {
         let finding = find(id, SOURCE);
         assert_eq!(finding.verdict, Reproduced, "{id}: {}", finding.summary);
-        assert_eq!(finding.varied, "force");
+        assert_eq!(claim(id).varied, "force");
         assert!(!finding.paragraphs.is_empty());
     }
     for (id, change, verdict) in cases {
@@ -401,7 +401,7 @@ fn neither_a_coarse_grid_nor_one_beside_the_transition_decides() {
     let rows = branches(&RATES, |force, _| apart(force).then_some(tube));
     let finding = of_branches("S3", &rows);
     assert_eq!(finding.verdict, Verdict::Open, "{}", finding.summary);
-    assert!(finding.statistics.suffice(&finding.needed));
+    assert!(finding.statistics.suffice(&claim("S3").needed));
 }
 
 #[test]

@@ -59,10 +59,6 @@ fn count(evidence: &Evidence, study: &str) -> Result<Finding, ReproduceError> {
         verdict: Verdict::Reproduced,
         summary: format!("{} runs, {} missing", results.rows().len(), results.missing),
         statistics,
-        needed: Statistics {
-            replicates: 2,
-            ..Statistics::FOR_A_VERDICT
-        },
         ..Finding::default()
     })
 }
@@ -72,12 +68,13 @@ const fn claim(
     studies: &'static [&'static str],
     examine: fn(&Evidence) -> Result<Finding, ReproduceError>,
 ) -> Claim {
-    Claim {
-        id,
-        prose: Prose::new("# tested\n"),
-        studies,
-        examine,
-    }
+    Claim::new(id, Prose::new("# tested\n"), studies, examine).varying(
+        "width",
+        Statistics {
+            replicates: 2,
+            ..Statistics::FOR_A_VERDICT
+        },
+    )
 }
 
 const CLAIMS: [Claim; 4] = [

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use peristalsis_reproduce::{CLAIMS, Evidence, Finding, Lattice, STUDIES, Size, Start, Verdict};
 
-use rows::{Rows, assert_says, assert_verdict, examine, value};
+use rows::{Rows, assert_says, assert_verdict, claim, examine, value};
 
 /// A tube whose transition times and branches follow given laws.
 #[derive(Clone, Copy)]
@@ -229,7 +229,7 @@ fn one_lattice_alone_is_examined() {
     let mut evidence = rows::evidence(&[]);
     SOURCE.on(Lattice::FINE, "fine", &mut evidence);
     for claim in CLAIMS {
-        let finding = (claim.examine)(&evidence).unwrap();
+        let finding = claim.examine(&evidence).unwrap();
         assert!(!finding.summary.is_empty(), "{}", claim.id);
     }
 }
@@ -370,7 +370,7 @@ fn what_is_divided_or_uncertain_stays_open() {
         ];
         let found = examine(id, &rows::evidence(&studies));
         assert_eq!(found.verdict, Verdict::Open, "{id}: {:?}", found.walls);
-        assert!(found.statistics.suffice(&found.needed), "{id}");
+        assert!(found.statistics.suffice(&claim(id).needed), "{id}");
     }
     let uncertain: [(&str, Change); 3] = [
         ("F3", |tube| tube.uneven = 3.0),
@@ -384,7 +384,7 @@ fn what_is_divided_or_uncertain_stays_open() {
         tube.on(Lattice::FINE, "fine", &mut evidence);
         let found = examine(id, &evidence);
         assert_eq!(found.verdict, Verdict::Open, "{id}: {:?}", found.walls);
-        assert!(found.statistics.suffice(&found.needed), "{id}");
+        assert!(found.statistics.suffice(&claim(id).needed), "{id}");
     }
     let divided = |fraction: f64| Tube {
         alpha: if fraction < 0.4 { 1.0 } else { 2.0 },
@@ -393,7 +393,7 @@ fn what_is_divided_or_uncertain_stays_open() {
     let rows = Tube::densities(Lattice::FINE, divided);
     let found = examine("F8", &rows::evidence(&[("density-fine", &rows)]));
     assert_eq!(found.verdict, Verdict::Open, "{:?}", found.walls);
-    assert!(found.statistics.suffice(&found.needed));
+    assert!(found.statistics.suffice(&claim("F8").needed));
 }
 
 /// Claim, name of the quantity, its value by the law of the tube, and how near it must come.

@@ -61,13 +61,7 @@ impl Row {
                 continue;
             }
             let there = computed.table().column(name).ok().map(|it| &it.values);
-            let is_same = match (&column.values, there) {
-                (Values::Real(one), Some(Values::Real(other))) => {
-                    one[0].to_bits() == other[0].to_bits() || one[0].is_nan() && other[0].is_nan()
-                }
-                (here, there) => Some(here) == there,
-            };
-            if !is_same {
+            if there != Some(&column.values) {
                 let there_number = number(computed, name);
                 let is_near = (there_number - here).abs() <= ROUNDING * here.abs();
                 differences.push(RowDifference {

@@ -31,7 +31,7 @@ use crate::timeline::{Driven, Row, Timeline};
 const WAITING: f64 = 3.0;
 
 /// The head of a frame.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Head {
     /// Number of a recorded frame, counted from 0; null where the run is computed.
@@ -78,12 +78,6 @@ impl Head {
         let (wall_spheres, rings) = of_wall(wall);
         let driven = Driven::of(run);
         Self {
-            number: None,
-            past: false,
-            epoch: 0,
-            playing: false,
-            ended: false,
-            speed: None,
             step: simulation.step(),
             time: simulation.time(),
             clock: Timeline(run.configuration()).clock(simulation.time()),
@@ -96,9 +90,8 @@ impl Head {
             contacts: contacts.len() / 6,
             driven,
             aims: driven,
-            rows: Vec::new(),
             sample: run.recorder().samples().last().map(Into::into),
-            warnings: Vec::new(),
+            ..Self::default()
         }
     }
 }

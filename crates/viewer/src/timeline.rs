@@ -35,7 +35,7 @@ pub(crate) struct Row {
 }
 
 /// What belongs to each parameter that may have a slider; nothing for a parameter that cannot be changed.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 #[cfg_attr(test, derive(ts_rs::TS))]
 pub(crate) struct Sliders<T> {
     pub(crate) width: Option<T>,

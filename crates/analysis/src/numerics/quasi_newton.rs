@@ -32,24 +32,27 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn scale(matrix: &mut [Vec<f64>], factor: impl Fn(usize, usize) -> f64) {
-    for (row, entries) in matrix.iter_mut().enumerate() {
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+fn scaled(matrix: &[Vec<f64>], factor: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    let mut scaled = matrix.to_vec();
+    for (row, entries) in scaled.iter_mut().enumerate() {
         for (column, entry) in entries.iter_mut().enumerate() {
             *entry *= factor(row, column);
         }
     }
+    scaled
 }
 
 /// Slopes by central differences, or to the side where the function has a value.
 fn slope_of(function: &impl Fn(&[f64]) -> f64, offset: &[f64], here: f64) -> Vec<f64> {
     let slope = |axis: usize| {
-        let mut offset = offset.to_vec();
-        let mut moved = |by: f64| {
-            let kept = offset[axis];
+        let moved = |by: f64| {
+            let mut offset = offset.to_vec();
             offset[axis] += by;
-            let value = function(&offset);
-            offset[axis] = kept;
-            value
+            function(&offset)
         };
         let [up, down] = [moved(DIFFERENCE), moved(-DIFFERENCE)];
         match [up.is_finite(), down.is_finite()] {
@@ -95,27 +98,21 @@ pub(crate) fn quasi_newton(
     inverse: Option<&[Vec<f64>]>,
 ) -> Option<Smallest> {
     let dimensions = start.len();
-    let at = |scaled: &[f64]| {
-        let place = scaled.iter().zip(start).zip(steps);
-        let place: Vec<f64> = place
+    let place = |offset: &[f64]| -> Vec<f64> {
+        let places = offset.iter().zip(start).zip(steps);
+        places
             .map(|((offset, start), step)| start + offset * step)
-            .collect();
-        function(&place)
+            .collect()
     };
+    let at = |offset: &[f64]| function(&place(offset));
+    let steepest = |slope: &[f64]| diagonal(dimensions, 1.0 / dot(slope, slope).sqrt().max(10.0));
     let mut offset = vec![0.0; dimensions];
     let mut value = Some(at(&offset)).filter(|value| value.is_finite())?;
     let mut slope = slope_of(&at, &offset, value);
-    let scaled = |inverse: &[Vec<f64>]| {
-        let mut inverse = inverse.to_vec();
-        scale(&mut inverse, |row, column| {
-            1.0 / (steps[row] * steps[column])
-        });
-        inverse
-    };
     let mut is_fresh = inverse.is_none();
     let mut inverse = match inverse {
-        Some(inverse) => scaled(inverse),
-        None => diagonal(dimensions, 1.0 / dot(&slope, &slope).sqrt().max(10.0)),
+        Some(inverse) => scaled(inverse, |row, column| 1.0 / (steps[row] * steps[column])),
+        None => steepest(&slope),
     };
     for _ in 0..MOST_STEPS {
         let mut step: Vec<f64> = inverse.iter().map(|row| -dot(row, &slope)).collect();
@@ -146,22 +143,13 @@ pub(crate) fn quasi_newton(
             if is_fresh {
                 break;
             }
-            inverse = diagonal(dimensions, 1.0 / dot(&slope, &slope).sqrt().max(10.0));
+            inverse = steepest(&slope);
             is_fresh = true;
             continue;
         };
         let gain = value - there;
         let next = slope_of(&at, &moved, there);
-        let change: Vec<f64> = next
-            .iter()
-            .zip(&slope)
-            .map(|(next, slope)| next - slope)
-            .collect();
-        let way: Vec<f64> = moved
-            .iter()
-            .zip(&offset)
-            .map(|(to, from)| to - from)
-            .collect();
+        let [change, way] = [difference(&next, &slope), difference(&moved, &offset)];
         let bend = dot(&change, &way);
         if bend > 1e-12 {
             if is_fresh {
@@ -175,15 +163,10 @@ pub(crate) fn quasi_newton(
             break;
         }
     }
-    let place = offset.iter().zip(start).zip(steps);
-    let place = place
-        .map(|((offset, start), step)| start + offset * step)
-        .collect();
-    scale(&mut inverse, |row, column| steps[row] * steps[column]);
     Some(Smallest {
-        place,
+        place: place(&offset),
         value,
-        inverse,
+        inverse: scaled(&inverse, |row, column| steps[row] * steps[column]),
     })
 }
 

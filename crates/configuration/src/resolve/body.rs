@@ -20,7 +20,7 @@ pub(super) fn body(keys: &Keys, units: Option<&Units>, context: &mut Context<'_>
         _ => keys.body.gravity,
     };
     if let Some(largest) = gravity.into_iter().find(|it| it.abs() > LARGEST) {
-        return context.refuse(
+        return context.refuse_as(
             ProblemKind::OutOfRange,
             &["units.acceleration"],
             format!(

@@ -3,7 +3,6 @@
 use peristalsis_physics::contact::{Cohesion, ContactModel, Normal, PullOff};
 
 use super::Context;
-use crate::error::ProblemKind;
 use crate::keys::{ContactKeys, Keys};
 use crate::units::Units;
 
@@ -26,16 +25,15 @@ pub(super) fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<Co
         let help = format!(
             "kinetic friction is at most the static one: set contact.kinetic_friction to at most {static_friction} (both to 0 for frictionless grains)"
         );
-        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
+        return context.refuse(&keys, message, help);
     }
     let friction = (static_friction > 0.0).then_some(friction);
     let rolling = (keys.rolling.rolling_friction > 0.0).then_some(keys.rolling);
     if friction.is_none() && rolling.is_some() {
         return context.refuse(
-            ProblemKind::Inconsistent,
             &["contact.rolling_friction", "contact.static_friction"],
-            "contact.rolling_friction needs friction: frictionless grains do not rotate".into(),
-            "give contact.static_friction, or contact.rolling_friction = 0".into(),
+            "contact.rolling_friction needs friction: frictionless grains do not rotate",
+            "give contact.static_friction, or contact.rolling_friction = 0",
         );
     }
     Some(ContactModel {
@@ -80,27 +78,27 @@ pub(super) fn with_cohesion(
         let message = "linear cohesion and JKR cohesion are both given".to_owned();
         let help =
             format!("keep one of {COHESION_FORCE} and {SURFACE_ENERGY}, and set the other to 0");
-        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
+        return context.refuse(&keys, message, help);
     }
     if surface_energy > 0.0 && !matches!(contact.normal, Normal::Hertz(_)) {
         let keys = [SURFACE_ENERGY, "units.surface_energy", "contact.law"];
         let message = format!("{SURFACE_ENERGY} gives JKR cohesion, which goes with the Hertz law");
         let help = format!("contact.law = \"hertz\", or {COHESION_FORCE} for any law");
-        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
+        return context.refuse(&keys, message, help);
     }
     if cohesion_range > 0.0 && cohesion_force == 0.0 {
         let keys = ["contact.cohesion_range"];
         let message =
             format!("contact.cohesion_range is the reach of {COHESION_FORCE}, which is 0");
         let help = format!("give {COHESION_FORCE}, or leave contact.cohesion_range out");
-        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
+        return context.refuse(&keys, message, help);
     }
     if pull_off != PullOff::default() && surface_energy == 0.0 {
         let keys = ["contact.pull_off"];
         let message =
             format!("contact.pull_off says where a JKR contact breaks, and {SURFACE_ENERGY} is 0");
         let help = format!("give {SURFACE_ENERGY}, or leave contact.pull_off out");
-        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
+        return context.refuse(&keys, message, help);
     }
     Some(ContactModel {
         cohesion: cohesion.given(),

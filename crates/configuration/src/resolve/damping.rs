@@ -22,7 +22,7 @@ pub(super) fn damped(
         if context.given(SPEED) {
             let message = format!("{SPEED} is given without {RESTITUTION}");
             let help = format!("give {RESTITUTION} as well, or leave {SPEED} out");
-            return context.refuse(ProblemKind::Inconsistent, &[SPEED], message, help);
+            return context.refuse(&[SPEED], message, help);
         }
         return Some(contact);
     };
@@ -36,14 +36,14 @@ pub(super) fn damped(
     if damping.is_nan() && speed == 0.0 {
         let message = format!("{RESTITUTION} holds at the speed of the wave, which stands still");
         let help = format!("give the speed of the impact that is meant as {SPEED}");
-        return context.refuse(ProblemKind::Inconsistent, &[RESTITUTION], message, help);
+        return context.refuse(&[RESTITUTION], message, help);
     }
     let most = schema_of(key)["maximum"].as_f64();
     // Also false where extreme values come to no number.
     if !most.is_some_and(|most| damping <= most) {
         let message = format!("{RESTITUTION} = {restitution} asks for {key} = {damping:e}");
         let help = format!("{key} is at most {:e}", most.unwrap_or(f64::INFINITY));
-        return context.refuse(ProblemKind::OutOfRange, &[RESTITUTION], message, help);
+        return context.refuse_as(ProblemKind::OutOfRange, &[RESTITUTION], message, help);
     }
     Some(ContactModel { normal, ..contact })
 }

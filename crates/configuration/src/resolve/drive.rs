@@ -5,7 +5,6 @@ use peristalsis_physics::wall::table::MOST_POINTS;
 use peristalsis_physics::wall::{Arrangement, LONGEST_CYCLE, RadiusTable, SegmentDrive, Segments};
 
 use crate::configuration::{Control, Drive, Tube};
-use crate::error::ProblemKind;
 use crate::keys::Keys;
 use crate::units::Units;
 use crate::waveform::WaveformName;
@@ -46,10 +45,8 @@ fn segments(drive: &Drive, tube: &Tube, context: &mut Context<'_>) -> Option<Opt
         segments.order = (1..=number).collect();
     }
     check_strain_control(drive, "segments set", context)?;
-    let kind = ProblemKind::Inconsistent;
     if tube.arrangement != Arrangement::Smooth && tube.rings_per_wave < 2 * number {
         return context.refuse(
-            kind,
             &["drive.segments", "tube.rings_per_wave"],
             format!(
                 "{number} segments in {} rings of wall spheres: a segment needs two rings at least",
@@ -61,17 +58,15 @@ fn segments(drive: &Drive, tube: &Tube, context: &mut Context<'_>) -> Option<Opt
     let cycle = segments.cycle();
     if cycle > LONGEST_CYCLE {
         return context.refuse(
-            kind,
             &["drive.duty", "drive.rise", "drive.fall"],
             format!(
                 "a segment closes, stays closed and opens within {cycle:.4} periods, more than one"
             ),
-            "drive.duty + drive.rise + drive.fall is at most 1".into(),
+            "drive.duty + drive.rise + drive.fall is at most 1",
         );
     }
     if Segments::new(&segments).is_none() {
         return context.refuse(
-            kind,
             &["drive.order", "drive.segments"],
             format!("drive.order does not name each of the {number} segments once"),
             format!("a list of the numbers from 1 to {number}, each once, in the order in which the segments close"),
@@ -86,10 +81,9 @@ fn check_strain_control(drive: &Drive, setting: &str, context: &mut Context<'_>)
         return Some(());
     };
     context.refuse(
-        ProblemKind::Inconsistent,
         &["drive.waveform", "drive.control"],
         format!("{setting} the radius of the tube, and under stress control nothing does"),
-        "drive.control = \"strain\", or the waveform \"sine\", \"bolus\" or \"roller\"".into(),
+        "drive.control = \"strain\", or the waveform \"sine\", \"bolus\" or \"roller\"",
     )
 }
 
@@ -108,7 +102,6 @@ fn check_table(drive: &Drive, context: &mut Context<'_>) -> Option<()> {
             (points, _) => format!("these {points} points are no curve over a wavelength"),
         };
         return context.refuse(
-            ProblemKind::Inconsistent,
             &["drive.phases", "drive.radii", "drive.waveform"],
             message,
             format!(
@@ -131,7 +124,6 @@ fn width(
         if width > diameter {
             let [width, diameter] = [width, diameter].map(plain);
             return context.refuse(
-                ProblemKind::Inconsistent,
                 &["drive.width", "tube.radius"],
                 format!(
                     "drive.width = {width} is wider than the tube, 2 a = {diameter} between the centres of the wall spheres"
@@ -145,7 +137,6 @@ fn width(
     if amplitude > radius {
         let [amplitude, radius] = [amplitude, radius].map(plain);
         return context.refuse(
-            ProblemKind::Inconsistent,
             &["drive.amplitude", "tube.radius"],
             format!(
                 "drive.amplitude = {amplitude} is larger than the radius of the tube, a = {radius}"

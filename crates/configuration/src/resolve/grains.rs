@@ -20,15 +20,13 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
     let (least, most) = (grains.diameter_min, grains.diameter_max);
     if least > most {
         return context.refuse(
-            ProblemKind::Inconsistent,
             &["grains.diameter_min", "grains.diameter_max"],
             format!(
                 "grains.diameter_min = {} is above grains.diameter_max = {}",
                 plain(least),
                 plain(most)
             ),
-            "diameters lie between diameter_min and diameter_max; give both (each is 1 if missing)"
-                .into(),
+            "diameters lie between diameter_min and diameter_max; give both (each is 1 if missing)",
         );
     }
     let square = tube.radius * tube.radius;
@@ -44,7 +42,7 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
     let within = number <= limits::MOST_GRAINS as f64;
     if !within {
         let key = context.written(NUMBERS);
-        return context.refuse(
+        return context.refuse_as(
             ProblemKind::OutOfRange,
             &[key],
             format!(
@@ -57,11 +55,11 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
     let asked = keys.volume_fraction.or(keys.number_density);
     if number == 0.0 && asked.is_some_and(|asked| asked > 0.0) {
         let key = context.written(NUMBERS);
-        return context.refuse(
+        return context.refuse_as(
             ProblemKind::OutOfRange,
             &[key, "grains.diameter_max"],
             format!("{key} is less than half a grain in this tube"),
-            "take more, a longer tube (tube.waves) or smaller grains; an empty tube has grains.number = 0".into(),
+            "take more, a longer tube (tube.waves) or smaller grains; an empty tube has grains.number = 0",
         );
     }
     grains.number = number as u64;
@@ -115,10 +113,5 @@ fn sizes(grains: &mut Grains, by_volume: Option<f64>, context: &mut Context<'_>)
     let help = "uniform: grains.diameter_min and grains.diameter_max. lognormal: both, grains.diameter_spread and \
                 grains.diameter_median. two: both and grains.large_fraction or grains.large_volume_fraction. table: grains.file, \
                 or grains.diameters and grains.fractions";
-    context.refuse(
-        ProblemKind::Inconsistent,
-        &["grains.sizes"],
-        message.to_owned(),
-        help.to_owned(),
-    )
+    context.refuse(&["grains.sizes"], message, help)
 }

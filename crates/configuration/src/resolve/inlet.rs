@@ -4,12 +4,10 @@ use peristalsis_physics::ends::{Ends, Inlet, gap};
 
 use super::{Context, plain};
 use crate::configuration::{Configuration, Control};
-use crate::error::ProblemKind;
 use crate::grains::Grains;
 use crate::keys::Keys;
 use crate::units::{HOUR, Units};
 
-const KIND: ProblemKind = ProblemKind::Inconsistent;
 /// Length of the stretch where grains are put in, unless it is given, in largest diameters.
 const USUAL_LENGTH: f64 = 3.0;
 
@@ -26,10 +24,9 @@ pub(super) fn inlet(
     }
     if let Control::Stress { .. } = keys.drive.drive.control {
         return context.refuse(
-            KIND,
             &["tube.ends", "drive.control"],
-            "an elastic wall has no ends: its springs and its waves go round the period".into(),
-            "drive.control = \"strain\", or leave tube.ends out".into(),
+            "an elastic wall has no ends: its springs and its waves go round the period",
+            "drive.control = \"strain\", or leave tube.ends out",
         );
     }
     let (gap, usual) = (gap(grains.diameter_max), USUAL_LENGTH * grains.diameter_max);
@@ -37,7 +34,6 @@ pub(super) fn inlet(
     let least = gap + usual;
     if length <= usual {
         return context.refuse(
-            KIND,
             &["tube.wavelength", "tube.waves", "tube.ends"],
             format!(
                 "an open tube needs a length above {least}: {gap} between its ends, and {usual} for the inlet; waves * \
@@ -66,7 +62,6 @@ pub(super) fn inlet(
         if value > most {
             let most = plain(most);
             return context.refuse(
-                KIND,
                 &[key, "tube.wavelength", "tube.waves", "inlet.head"],
                 format!("{key} = {} is longer than {of}, {most}", plain(value)),
                 format!("{key} is at most {most} (waves * wavelength less {gap} between the ends)"),
@@ -75,13 +70,12 @@ pub(super) fn inlet(
     }
     if inlet.waiting > grains.number {
         return context.refuse(
-            KIND,
             &["inlet.waiting", "grains.number"],
             format!(
                 "{} grains wait outside, and there are {}",
                 inlet.waiting, grains.number
             ),
-            "grains.number counts all grains, those that wait with them".into(),
+            "grains.number counts all grains, those that wait with them",
         );
     }
     if let (Some(rate), Some(units)) = (keys.units.feed_rate, units) {
@@ -96,12 +90,10 @@ pub(super) fn check_direction(configuration: &Configuration, context: &mut Conte
     let stands = configuration.drive.period().is_none();
     if configuration.inlet.is_some() && stands && configuration.axial_body_force() <= 0.0 {
         context.refuse::<()>(
-            KIND,
             &["tube.ends", "body.gravity", "drive.direction", "drive.body_force"],
             "the wave stands, and no weight carries the grains to the outlet, which is the end that the wave would run to: \
-             -z, or +z where drive.direction = \"backward\""
-                .into(),
-            "give body.gravity towards that end, such as [0, 0, -0.001], or a wave that runs".into(),
+             -z, or +z where drive.direction = \"backward\"",
+            "give body.gravity towards that end, such as [0, 0, -0.001], or a wave that runs",
         );
     }
 }

@@ -4,7 +4,6 @@ use peristalsis_physics::method::Kernel;
 
 use super::Context;
 use crate::configuration::Configuration;
-use crate::error::ProblemKind;
 
 impl Configuration {
     /// The reason, in words, why this configuration needs the reference kernel; `None` where a fast kernel can compute it.
@@ -28,7 +27,7 @@ pub(super) fn choose(configuration: &mut Configuration, context: &mut Context<'_
         let message = format!("{key} = \"fast\", and the reference kernel alone computes {what}");
         let help = format!("leave {key} out, or {key} = \"reference\"");
         return context
-            .refuse::<()>(ProblemKind::Inconsistent, &[key], message, help)
+            .refuse::<()>(&[key], message, help)
             .unwrap_or_default();
     }
     configuration.run.kernel = Kernel::Reference;

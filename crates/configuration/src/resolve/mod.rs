@@ -23,7 +23,7 @@ use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
 use crate::keys::{ALTERNATIVES, Keys};
 use crate::layers::{self, list};
 use crate::materials;
-use crate::presets::{PRESETS, Preset, preset};
+use crate::presets::{Preset, preset, preset_names};
 use crate::schema;
 use crate::source::{Origin, Source, SourceFile, SourceKind, Sources};
 use crate::suggestion;
@@ -264,10 +264,6 @@ fn missing(table: &Table) -> Vec<String> {
     missing
 }
 
-fn preset_names() -> Vec<&'static str> {
-    PRESETS.iter().map(|preset| preset.name).collect()
-}
-
 /// Schema of a key by its full name.
 fn schema_of(key: &str) -> &'static serde_json::Value {
     key.split('.')
@@ -292,15 +288,25 @@ impl Context<'_> {
         found.copied().unwrap_or(keys[0])
     }
 
-    /// Notes a problem with the values of some keys together, the first being to blame; always `None`.
+    /// Notes that the values of some keys do not go together, the first being to blame; always `None`.
     fn refuse<T>(
+        &mut self,
+        keys: &[&str],
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.refuse_as(ProblemKind::Inconsistent, keys, message, help)
+    }
+
+    /// The same with a problem of another kind.
+    fn refuse_as<T>(
         &mut self,
         kind: ProblemKind,
         keys: &[&str],
-        message: String,
-        help: String,
+        message: impl Into<String>,
+        help: impl Into<String>,
     ) -> Option<T> {
-        self.report(kind, keys, message, help);
+        self.report(kind, keys, message.into(), help.into());
         None
     }
 
@@ -424,26 +430,22 @@ fn check_settling(configuration: &Configuration, context: &mut Context<'_>) {
     }
     if let Control::Stress { .. } = configuration.drive.control {
         context.refuse::<()>(
-            ProblemKind::Inconsistent,
             &["initial.state", "drive.control"],
-            "grains settle in a wall that stands still, and an elastic one does not".into(),
-            "initial.state = \"rest\", or drive.control = \"strain\"".into(),
+            "grains settle in a wall that stands still, and an elastic one does not",
+            "initial.state = \"rest\", or drive.control = \"strain\"",
         );
     } else if !configuration.has_body_force() {
         context.refuse::<()>(
-            ProblemKind::Inconsistent,
             &["initial.state", "body.gravity"],
-            "initial.state = \"settled\" needs gravity for the grains to settle under".into(),
+            "initial.state = \"settled\" needs gravity for the grains to settle under",
             "give body.gravity, such as [0, -0.001, 0] for a horizontal tube, or units.acceleration in SI; \
-             or take initial.state = \"rest\""
-                .into(),
+             or take initial.state = \"rest\"",
         );
     } else if configuration.initial.temperature != 0.0 {
         context.refuse::<()>(
-            ProblemKind::Inconsistent,
             &["initial.temperature", "initial.state"],
-            "grains that have settled are at rest".into(),
-            "initial.state = \"rest\", or no initial.temperature".into(),
+            "grains that have settled are at rest",
+            "initial.state = \"rest\", or no initial.temperature",
         );
     }
 }

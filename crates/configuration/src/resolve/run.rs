@@ -45,7 +45,7 @@ pub(super) fn run(
         let keys = [context.written(LENGTHS), "run.time_step"];
         let message = format!("a run of {steps:e} steps is beyond reach");
         let help = format!("at most {most:e} steps: a shorter run, or a longer run.time_step");
-        return context.refuse(ProblemKind::OutOfRange, &keys, message, help);
+        return context.refuse_as(ProblemKind::OutOfRange, &keys, message, help);
     }
     if !context.given("run.neighbour_skin") {
         run.neighbour_skin = NEIGHBOUR_SKIN_RATIO * grains.diameter_max;
@@ -66,11 +66,9 @@ fn timing(
         if !context.given("run.duration") {
             let rate = context.written(RATES);
             return context.refuse(
-                ProblemKind::Inconsistent,
                 &["run.periods", rate],
                 format!("{rate} = 0 is a static wave, which has no period to count in"),
-                "give run.duration instead of run.periods (--set run.duration=100 replaces the preset's periods)"
-                    .into(),
+                "give run.duration instead of run.periods (--set run.duration=100 replaces the preset's periods)",
             );
         }
         let (samples, periods) = (SAMPLES_OF_A_STATIC_RUN, None);
@@ -92,7 +90,7 @@ fn timing(
         let keys = [context.written(LENGTHS), "observe.samples_per_period"];
         let message = format!("a run of {samples:e} samples is beyond reach");
         let help = format!("at most {most:e} samples: a shorter run, or fewer samples per period");
-        return context.refuse(ProblemKind::OutOfRange, &keys, message, help);
+        return context.refuse_as(ProblemKind::OutOfRange, &keys, message, help);
     }
     let periods = samples / per_period;
     let run = Run {

@@ -25,10 +25,9 @@ pub(super) fn schedules(
 ) -> Option<Vec<Schedule>> {
     if keys.ramp_periods.is_some() && keys.schedule.is_none() {
         return context.refuse(
-            ProblemKind::Inconsistent,
             &["drive.ramp_periods"],
-            "drive.ramp_periods is given without a ramp".into(),
-            "add drive.schedule = \"ramp\", or remove drive.ramp_periods".into(),
+            "drive.ramp_periods is given without a ramp",
+            "add drive.schedule = \"ramp\", or remove drive.ramp_periods",
         );
     }
     let tables = match keys.schedule.as_ref() {
@@ -70,11 +69,11 @@ pub(super) fn schedules(
 
 fn plain_ramp(keys: &DriveKeys, context: &mut Context<'_>) -> Option<ScheduleTableKeys> {
     let Some(end) = keys.ramp_periods else {
-        return context.refuse(
+        return context.refuse_as(
             ProblemKind::Missing,
             &[KEY],
-            "drive.schedule = \"ramp\" needs drive.ramp_periods".into(),
-            "drive.ramp_periods = 2 lets the amplitude grow from nothing within two periods".into(),
+            "drive.schedule = \"ramp\" needs drive.ramp_periods",
+            "drive.ramp_periods = 2 lets the amplitude grow from nothing within two periods",
         );
     };
     Some(ScheduleTableKeys {

@@ -196,5 +196,5 @@ pub(super) fn check(tube: &Tube, context: &mut Context<'_>) {
     } else {
         return;
     };
-    context.refuse::<()>(ProblemKind::Inconsistent, &keys, message, help);
+    context.refuse::<()>(&keys, message, help);
 }

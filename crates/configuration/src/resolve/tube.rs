@@ -18,7 +18,7 @@ pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Contex
         let keys = ["tube.arrangement"];
         let message = "tube.arrangement is \"staggered\" under stress control: an elastic wall is a net of springs between staggered rings".to_owned();
         let help = "leave tube.arrangement out, or take drive.control = \"strain\"".to_owned();
-        context.refuse::<()>(ProblemKind::Inconsistent, &keys, message, help);
+        context.refuse::<()>(&keys, message, help);
     }
     if tube.arrangement == Arrangement::Staggered {
         check_rings(tube, control, context);
@@ -32,7 +32,7 @@ pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Contex
         let keys = ["tube.waves", "tube.rings_per_wave", "tube.spheres_per_ring"];
         let message = format!("a tube of {spheres} wall spheres is beyond reach");
         let help = format!("spheres_per_ring * rings_per_wave * waves is at most {most}");
-        context.refuse::<()>(ProblemKind::OutOfRange, &keys, message, help);
+        context.refuse_as::<()>(ProblemKind::OutOfRange, &keys, message, help);
     }
 }
 
@@ -45,14 +45,12 @@ pub(super) fn check_radius(tube: &Tube, grains: &Grains, context: &mut Context<'
     }
     let (radius, least) = (plain(radius), plain(least));
     context.refuse(
-        ProblemKind::Inconsistent,
         &["tube.radius", "grains.diameter_min"],
         format!(
             "tube.radius = {radius} is less than half the smallest grain, {least}: no grain fits into the tube"
         ),
         "lengths of the tube, the drive and the grains are in units of d, a grain of diameter 1, also where units.grain_diameter \
-         gives d in metres: a radius of 7 mm with grains of 2 mm is tube.radius = 3.5"
-            .to_owned(),
+         gives d in metres: a radius of 7 mm with grains of 2 mm is tube.radius = 3.5",
     )
 }
 
@@ -76,11 +74,11 @@ pub(super) fn check_sphere_diameter(tube: &Tube, diameter: f64, context: &mut Co
     if diameter > 0.0 || tube.arrangement == Arrangement::Smooth {
         return;
     }
-    context.refuse::<()>(
+    context.refuse_as::<()>(
         ProblemKind::OutOfRange,
         &["wall.sphere_diameter", "tube.arrangement"],
-        "wall.sphere_diameter = 0: a wall of spheres needs spheres".to_owned(),
-        "a number above 0, or tube.arrangement = \"smooth\"".to_owned(),
+        "wall.sphere_diameter = 0: a wall of spheres needs spheres",
+        "a number above 0, or tube.arrangement = \"smooth\"",
     );
 }
 
@@ -113,7 +111,7 @@ fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
             )
         }
     };
-    context.refuse::<()>(ProblemKind::Inconsistent, keys, message, help);
+    context.refuse::<()>(keys, message, help);
 }
 
 /// A grain meets each wall sphere within its reach at every step: there must not be more than can be gone through. Walls of too
@@ -127,7 +125,7 @@ pub(super) fn check_reach(tube: &Tube, reach: f64, context: &mut Context<'_>) {
         limits::MOST_WALL_SPHERES_IN_REACH,
     );
     if met > most && tube.wall_spheres() <= limits::MOST_WALL_SPHERES {
-        context.refuse::<()>(
+        context.refuse_as::<()>(
             ProblemKind::OutOfRange,
             &["tube.rings_per_wave", "tube.spheres_per_ring"],
             format!("a wall so dense that a grain meets {met:.0} of its spheres at once"),
@@ -143,7 +141,6 @@ pub(super) fn check_length(tube: &Tube, reach: f64, context: &mut Context<'_>) {
         return;
     }
     context.refuse::<()>(
-        ProblemKind::Inconsistent,
         &["tube.wavelength", "tube.waves", "grains.diameter_max"],
         format!(
             "a tube that closes on itself: its length L = waves * wavelength = {length} is not above twice the reach of a contact, {least}"

@@ -56,12 +56,11 @@ pub(super) fn units(
         "units.feed_rate",
     ]);
     let blamed = keys.find(given).unwrap_or(NEEDED[0]);
-    context.refuse(
+    context.refuse_as(
         ProblemKind::Missing,
         &[blamed],
         format!("units in SI need {} as well{instead}", missing.join(" and ")),
         "length, mass and time follow from units.grain_diameter (m), units.density (kg/m^3) and units.stiffness (N/m; \
-         contact.law = \"linear\") or units.young_modulus (Pa; \"hertz\"): give all three"
-            .into(),
+         contact.law = \"linear\") or units.young_modulus (Pa; \"hertz\"): give all three",
     )
 }

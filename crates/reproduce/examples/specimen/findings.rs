@@ -35,17 +35,17 @@ const COARSE: StudyFile = StudyFile::new(
 /// A claim of the source that needs studies.
 macro_rules! claim {
     ($id:literal, $title:literal, $statement:literal, $studies:expr) => {
-        Claim {
-            id: $id,
-            prose: Prose::new(concat!(
+        Claim::new(
+            $id,
+            Prose::new(concat!(
                 "# ",
                 $title,
                 "\n\nSource: talk, slides 14 to 18\n\n",
                 $statement
             )),
-            studies: $studies,
-            examine: |_| Err(ReproduceError::NoSuchStudy("none".to_owned())),
-        }
+            $studies,
+            |_| Err(ReproduceError::NoSuchStudy("none".to_owned())),
+        )
     };
 }
 
@@ -137,8 +137,6 @@ fn finding(verdict: Verdict, summary: &str, statistics: [usize; 4]) -> Finding {
             replicates,
             runs,
         },
-        needed: Statistics::FOR_A_VERDICT,
-        varied: "width",
         ..Finding::default()
     }
 }

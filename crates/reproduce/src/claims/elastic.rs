@@ -3,22 +3,12 @@
 use peristalsis_figures::{ColourScale, Units};
 
 use super::prelude::*;
-pub(super) use crate::thresholds::FOR_A_VERDICT_ON_FORCES as NEEDED;
 
 /// Strain rate of the source's pictures.
 pub(super) const SOURCE_RATE: f64 = 4.01e-3;
 
-/// The studies that [`branch_rows`] reads.
+/// The studies with the runs of frictional grains at all strain rates and forces.
 pub(super) const BRANCHES: &[&str] = &["elastic-branches", "elastic-extremes"];
-
-/// The runs of frictional grains at all strain rates and forces.
-pub(super) fn branch_rows(evidence: &Evidence) -> Result<Vec<Row<'_>>> {
-    let mut rows = Vec::new();
-    for study in BRANCHES {
-        rows.extend(evidence.study(study)?.rows());
-    }
-    Ok(rows)
-}
 
 /// The lines that are judged: those with points on them, stationary flows of grains that stay in the tube.
 pub(super) fn judged<'b, 'a>(lines: &'b [ForceLine<'a>]) -> Vec<&'b ForceLine<'a>> {
@@ -54,17 +44,14 @@ pub(super) fn with_branches(mut panel: ChartPanel, lines: &[&ForceLine<'_>]) -> 
     panel.with_all([Key::filled("from rest"), Key::open("from jammed")])
 }
 
-/// A finding on forces.
-pub(super) fn draft(prose: Prose) -> Draft {
-    Draft::of(prose).varying("force")
-}
-
-/// A finding on forces without runs.
-pub(super) fn nothing(prose: &Prose) -> Finding {
-    Finding {
-        varied: "force",
-        ..prose.nothing(Statistics::default(), &NEEDED)
-    }
+/// A claim on forces.
+pub(super) const fn claim(
+    id: &'static str,
+    prose: Prose,
+    studies: &'static [&'static str],
+    finding: fn(&Evidence) -> Result<Finding>,
+) -> Claim {
+    Claim::new(id, prose, studies, finding).varying("force", FOR_A_VERDICT_ON_FORCES)
 }
 
 /// Whether the grains of a run are frictionless.

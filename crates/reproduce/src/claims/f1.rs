@@ -92,7 +92,6 @@ impl Kind<'_> {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Kind<'_>>::all(evidence)?;
     let (mut draft, mut parts, mut rows) = (Draft::of(PROSE), Vec::new(), Vec::new());
     let mut farther = Vec::new();
@@ -112,9 +111,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             draft.quantity("jammed flow", values!(wall, rate, below), flow);
         }
     }
-    let judgement = Judgement::of(parts, &needed);
+    let judgement = Judgement::of(parts, &CLAIM.needed);
     if walls.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let (slow, below, near) = (SLOW, BELOW_THE_JUMP, NEAR_ONE);
     let summary = PROSE.text("summary", values!(slow, below, near));

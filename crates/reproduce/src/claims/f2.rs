@@ -16,7 +16,6 @@ const NEXT: f64 = 0.5;
 const SHIFTS: [f64; 3] = [-0.1, 0.0, 0.1];
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Line<'_>>::all(evidence)?;
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut laws, mut sensitivity) = (Vec::new(), Vec::new(), Vec::new());
@@ -29,9 +28,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let fitted = one.fitted();
         sensitivity.extend(fitted.map(|(line, _)| shifted(&one.name, line)));
     }
-    let judgement = Judgement::of(parts, &needed);
+    let judgement = Judgement::of(parts, &CLAIM.needed);
     if sensitivity.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     poor_fits(&mut draft, &walls);
     let far = far_lines(&walls);

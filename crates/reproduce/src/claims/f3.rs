@@ -37,11 +37,10 @@ fn power_at(one: &OnWall<Line<'_>>, distance: f64) -> Option<Uncertain> {
         ))
     };
     let known = one.tight().filter_map(|shown| amplitude(&shown.found));
-    power_of_rate(&known.collect::<Vec<_>>())
+    fitted_power(known)
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let mut found: Vec<(String, Collapsed)> = Vec::new();
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut amplitudes) = (Vec::new(), Vec::new());
@@ -50,7 +49,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let mean = |ensemble: &WidthEnsemble| Some(ensemble.fit?.mean);
         let collapsed = collapse(&one, EXPONENTS, mean);
         let known = at_rates(one.near(), Near::amplitude);
-        let power = power_of_rate(&known);
+        let power = fitted_power(known.iter().copied());
         let wall = &one.name;
         let rates = known.len();
         draft.compared("amplitude", values!(wall, rates), power, AMPLITUDE);
@@ -74,9 +73,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         amplitudes.push((one.name.clone(), known));
         found.extend(collapsed.map(|collapsed| (one.name, collapsed)));
     }
-    let judgement = Judgement::of(parts, &needed);
+    let judgement = Judgement::of(parts, &CLAIM.needed);
     if rows.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let summary = PROSE.text("summary", &[]);
     if let Some((least, most)) = ends(powers.into_iter()) {
@@ -115,7 +114,7 @@ fn against_rate(walls: &[(String, Vec<(f64, Uncertain)>)]) -> ChartFigure {
         .with_all(numbered(drawn));
     for (series, (_, known)) in walls.iter().enumerate() {
         if let Some((line, (least, most))) =
-            line_of_rate(known).zip(ends(known.iter().map(|one| one.0)))
+            logarithmic_line(known.iter().copied()).zip(ends(known.iter().map(|one| one.0)))
         {
             let at = |rate: f64| (line.intercept.value + line.slope.value * rate.ln()).exp();
             let curve = Curve::new("", &[least, most], &[at(least), at(most)]);

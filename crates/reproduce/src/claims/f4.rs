@@ -16,7 +16,6 @@ const SCALING: [f64; 2] = [7.0, 1.5];
 const AMPLITUDE: f64 = EXPONENT * SCALING[1] - SCALING[0];
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Line<'_>>::all(evidence)?;
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut collapses) = (Vec::new(), Vec::new());
@@ -32,9 +31,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             collapses.push((one.name.clone(), collapsed));
         }
     }
-    let judgement = Judgement::of(parts, &needed);
+    let judgement = Judgement::of(parts, &CLAIM.needed);
     if rows.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let summary = PROSE.text("summary", &[]);
     draft.table("exponents", &[], rows);
@@ -56,36 +55,26 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 fn part(draft: &mut Draft, one: &OnWall<Line<'_>>, collapsed: Option<&Collapsed>) -> Part {
     let wall = &one.name;
     let agrees_at = |line: &Line<'_>| agrees(&line.near.as_ref()?.variance_exponent()?, EXPONENT);
-    let rates = one.rates(agrees_at);
+    let judged = one.rates(agrees_at);
     let exponents = at_rates(one.near(), Near::variance_exponent);
     let exponents: Vec<Uncertain> = exponents.into_iter().map(|one| one.1).collect();
     let mean = weighted_mean(&exponents);
     let amplitudes = at_rates(one.near(), |near| near.variance_amplitude(EXPONENT));
-    let power = power_of_rate(&amplitudes);
+    let power = fitted_power(amplitudes.iter().copied());
     let scales = all_hold(&[
         power.and_then(|power| agrees(&power, AMPLITUDE)),
         collapsed.and_then(Collapsed::agrees),
     ]);
-    let number_of_rates = exponents.len();
-    draft.compared(
-        "exponent",
-        values!(wall, rates = number_of_rates),
-        mean,
-        EXPONENT,
-    );
-    let number_of_rates = amplitudes.len();
-    draft.compared(
-        "amplitude",
-        values!(wall, rates = number_of_rates),
-        power,
-        AMPLITUDE,
-    );
+    let rates = exponents.len();
+    draft.compared("exponent", values!(wall, rates), mean, EXPONENT);
+    let rates = amplitudes.len();
+    draft.compared("amplitude", values!(wall, rates), power, AMPLITUDE);
     let (exponent, power) = (cell(mean), cell(power));
-    let (words, scaling) = (rates.in_words(), said(scales));
-    let (half, chance) = (said(rates.hold()), cell_of(collapsed, Collapsed::chance));
+    let (words, scaling) = (judged.in_words(), said(scales));
+    let (half, chance) = (said(judged.hold()), cell_of(collapsed, Collapsed::chance));
     let why = PROSE.text("why", values!(half, words, scaling, chance));
     let number = PROSE.text("number", values!(exponent, power));
-    one.part(all_hold(&[rates.hold(), scales]), number, why)
+    one.part(all_hold(&[judged.hold(), scales]), number, why)
 }
 
 fn row(wall: &str, shown: &Shown<Line<'_>>) -> Option<Vec<String>> {

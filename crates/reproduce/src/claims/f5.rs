@@ -208,7 +208,6 @@ impl Moments {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Moments>::all(evidence)?;
     let (mut draft, mut rows) = (Draft::of(PROSE), Vec::new());
     for one in &walls {
@@ -227,12 +226,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let collapses: Vec<Option<Collapsed>> = walls.iter().map(scaling).collect();
     let parts = walls.iter().zip(&collapses);
     let parts = parts.map(|(one, collapsed)| part(one, collapsed.as_ref()));
-    let judgement = Judgement::of(parts.collect(), &needed);
+    let judgement = Judgement::of(parts.collect(), &CLAIM.needed);
     if rows.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
-    let mut tubes = evidence.study("length")?.rows();
-    tubes.extend(evidence.study("longest-tubes")?.rows());
+    let tubes = evidence.rows(&["length", "longest-tubes"])?;
     let lengths = against_length(&tubes);
     // The moment of J itself is that of J/Jmax times the square of the length.
     let length = lengths.map(|power| Uncertain::normal(2.0 + power.value, power.error));
@@ -307,7 +305,7 @@ fn against_length(rows: &[Row<'_>]) -> Option<Uncertain> {
             let moment = Moment::of(width, &rows, rows[0].number("transition_threshold"))?;
             moment.jams.then(|| (waves, moment.height()))
         };
-        power_of_rate(&lengths.filter_map(peak).collect::<Vec<_>>())
+        fitted_power(lengths.filter_map(peak))
     };
     weighted_mean(&widths.filter_map(power).collect::<Vec<_>>())
 }

@@ -78,7 +78,6 @@ fn part(one: &OnWall<Jump<'_>>) -> Part {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Jump<'_>>::all(evidence)?;
     let (mut draft, mut rows) = (Draft::of(PROSE), Vec::new());
     for one in &walls {
@@ -88,9 +87,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         }
         rows.extend(one.all.iter().map(|jump| Jump::row(&one.name, jump)));
     }
-    let judgement = Judgement::of(walls.iter().map(part).collect(), &needed);
+    let judgement = Judgement::of(walls.iter().map(part).collect(), &CLAIM.needed);
     if rows.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let summary = PROSE.text("summary", values!(least = LEAST_JUMP, clear = CLEAR));
     draft.table("jumps", &[], rows);

@@ -14,7 +14,6 @@ pub(super) const SLOPE: f64 = -3.75;
 type Critical = Vec<(f64, Uncertain)>;
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut periods) = (Vec::new(), 0.0_f64);
     let mut panel = panel(Axis::StrainRate, Axis::CriticalWidth).x_range(0.0..);
@@ -33,9 +32,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         }
         parts.push(part(&mut draft, one, &critical, line.as_ref()));
     }
-    let judgement = Judgement::of(parts, &needed);
+    let judgement = Judgement::of(parts, &CLAIM.needed);
     if draft.finding.quantities.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let ends = [3.0 - 0.075, 3.0 - 0.45];
     panel = panel.with(

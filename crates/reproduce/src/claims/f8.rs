@@ -7,7 +7,8 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f8.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("F8", PROSE, &["density-*"], examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("F8", PROSE, &["density-*"], examine).varying("width", F8_NEEDED);
 
 /// What the source says of the transition time.
 const EXPONENT: f64 = 1.0;
@@ -192,9 +193,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         });
         draft.finding.quantities.extend(judged.quantities(&wall));
     }
-    let judgement = Judgement::of(parts, &F8_NEEDED);
+    let judgement = Judgement::of(parts, &CLAIM.needed);
     if rows.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &F8_NEEDED));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let hardly = number(100.0 * HARDLY, 0);
     let summary = PROSE.text("summary", values!(hardly));

@@ -188,7 +188,6 @@ impl Loop<'_> {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Loop<'_>>::all(evidence)?;
     let (mut draft, mut rows) = (Draft::of(PROSE), Vec::new());
     for one in &walls {
@@ -204,9 +203,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             draft.quantity("loop", values!(wall, rate), distance);
         }
     }
-    let judgement = Judgement::of(walls.iter().map(part).collect(), &needed);
+    let judgement = Judgement::of(walls.iter().map(part).collect(), &CLAIM.needed);
     if rows.is_empty() {
-        return Ok(PROSE.nothing(judgement.statistics, &needed));
+        return Ok(PROSE.nothing(judgement.statistics));
     }
     let periods = walls.iter().map(|one| one.periods).fold(0.0, f64::max);
     let summary = PROSE.text("summary", values!(periods));

@@ -10,7 +10,8 @@ const STUDIES: &[&str] = &[
     "branches-fine",
 ];
 
-pub(super) const CLAIM: Claim = Claim::new("Q1", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q1", PROSE, STUDIES, examine).varying("width", Q1_NEEDED);
 
 /// The lattices, whose names end those of their studies.
 const LATTICES: [&str; 2] = ["coarse", "fine"];
@@ -94,9 +95,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         here.sort_by(|one, other| one.strain_rate.total_cmp(&other.strain_rate));
         lines.extend(here);
     }
-    let statistics = best(all.into_iter(), &Q1_NEEDED);
+    let statistics = best(all.into_iter(), &CLAIM.needed);
     if lines.is_empty() {
-        return Ok(PROSE.nothing(statistics, &Q1_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     }
     let words = LATTICES.map(|lattice| {
         let here = lines.iter().filter(|line| line.lattice == lattice);
@@ -110,7 +111,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.table("falls", &[], lines.iter().map(Line::row));
     draft.chart("small-strain-rates", &[], figure(&lines))?;
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q1_NEEDED))
+    Ok(draft.concluded(Verdict::Answered, summary, statistics))
 }
 
 /// What the lines of one lattice say.

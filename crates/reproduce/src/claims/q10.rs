@@ -5,7 +5,8 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q10.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("Q10", PROSE, &["elastic-sensitivity"], examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q10", PROSE, &["elastic-sensitivity"], examine).varying("force", Q10_NEEDED);
 
 /// Keys of the wall and of the density with the preset's number, and how a departure from it is called.
 const NUMBERS: [(&str, f64, &str); 8] = [
@@ -110,13 +111,13 @@ impl<'a> Outcome<'a> {
 
     /// Largest part of the grains outside, and the forces at which too many are, in words.
     fn outside(&self) -> String {
-        let escaped = self.rows.iter().map(Row::escaped_fraction);
+        let escaped = largest(&self.rows, Row::escaped_fraction);
         let left_out: Vec<f64> = grouped(self.rows.iter(), |row| row.force())
             .into_iter()
             .map(|(force, _)| force)
             .filter(|force| self.tight.iter().all(|row| row.force() != *force))
             .collect();
-        outside(escaped.fold(0.0, f64::max), &left_out)
+        outside(escaped, &left_out)
     }
 
     /// Runs from jammed in which the jam gave way, of all: S2.
@@ -196,10 +197,7 @@ impl<'a> Outcome<'a> {
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let outcomes = Outcome::all_of(evidence.study("elastic-sensitivity")?.rows());
     if outcomes.is_empty() {
-        return Ok(Finding {
-            varied: "force",
-            ..PROSE.nothing(Statistics::default(), &Q10_NEEDED)
-        });
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let tight = outcomes.iter().filter(|outcome| outcome.holds_its_grains());
     let tight: Vec<[Option<bool>; 4]> = tight.map(Outcome::holds).collect();
@@ -215,14 +213,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (settings, tight, holding) = (outcomes.len(), tight.len(), words.join(", "));
     let summary = PROSE.text("summary", values!(settings, tight, holding));
     let statistics = Statistics::weakest_at_one_rate(outcomes.iter().map(Outcome::statistics));
-    let mut draft = Draft::of(PROSE).varying("force");
+    let mut draft = Draft::of(PROSE);
     draft.table("settings", &[], outcomes.iter().map(Outcome::row));
     let panels: Vec<ChartPanel> = outcomes.iter().filter_map(flow_of).collect();
     if !panels.is_empty() {
         let chart = grid(3, panels).share_x().share_y();
         draft.chart("sensitivity", &[], chart)?;
     }
-    Ok(draft.concluded(verdict, summary, statistics, &Q10_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// Both branches of one setting; `None` where they are empty.

@@ -5,7 +5,8 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("q11.md"));
 
 pub(super) const CLAIM: Claim =
-    Claim::new("Q11", PROSE, &["method-fine", "method-coarse"], examine);
+    Claim::new("Q11", PROSE, &["method-fine", "method-coarse"], examine)
+        .varying("width", Q11_NEEDED);
 
 /// How a run was computed.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -131,13 +132,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     // One strain rate a lattice, whatever the number of methods.
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());
     if panels.is_empty() {
-        return Ok(PROSE.nothing(statistics, &Q11_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     }
     let summary = PROSE.text("summary", values!(lattices = words.join("; ")));
     draft.table("methods", &[], rows);
     let chart = grid(panels.len(), panels);
     draft.chart("method", &[], chart)?;
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q11_NEEDED))
+    Ok(draft.concluded(Verdict::Answered, summary, statistics))
 }
 
 /// How far points at one step are apart.

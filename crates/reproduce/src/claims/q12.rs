@@ -50,7 +50,8 @@ fn is_known(study: &str) -> bool {
     STUDIES[..6].contains(&study)
 }
 
-pub(super) const CLAIM: Claim = Claim::new("Q12", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q12", PROSE, STUDIES, examine).varying("width", Q12_NEEDED);
 
 /// What makes a tube: whether its spheres are staggered, spheres a ring and rings a wave, then a, lambda, strain rate, k and
 /// eta.
@@ -273,7 +274,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (known, tests) = (of(is_known), of(|study| study == TEST));
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());
     if known.is_empty() {
-        return Ok(PROSE.nothing(statistics, &Q12_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     }
     let predictions = Prediction::all_from(&known);
     let mut draft = Draft::of(PROSE);
@@ -322,7 +323,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         values!(density, told = words.join("; "), nearest),
     );
     let verdict = Verdict::answered_if(tests.len() >= LEAST_TESTS);
-    Ok(draft.concluded(verdict, summary, statistics, &Q12_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// a and lambda of the presets \[d\], whose grains have k = 1.

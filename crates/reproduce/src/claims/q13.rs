@@ -4,7 +4,8 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q13.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("Q13", PROSE, &["closure"], examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q13", PROSE, &["closure"], examine).varying("width", Q13_NEEDED);
 
 /// Part of the flow at complete closure from which on the tube counts as a positive displacement pump.
 const NEARLY: f64 = 0.9;
@@ -38,11 +39,7 @@ impl Place {
         let held = first.volume_fraction() * radius * radius;
         let geometric = radius * radius + 0.5 * amplitude * amplitude;
         let part = held / geometric;
-        let most = |column| {
-            rows.iter()
-                .map(|row| row.number(column))
-                .fold(0.0, f64::max)
-        };
+        let most = |column| largest(rows, |row| row.number(column));
         Some(Self {
             occlusion: 1.0 - width / (2.0 * radius),
             width,
@@ -203,7 +200,7 @@ fn onset(places: &[Place]) -> Option<(Uncertain, Option<Uncertain>)> {
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = evidence.study("closure")?.rows();
     let cases = Case::all_of(&rows);
-    let nothing = |statistics| Ok(PROSE.nothing(statistics, &Q13_NEEDED));
+    let nothing = |statistics| Ok(PROSE.nothing(statistics));
     let Some((main, main_rows)) = cases.first() else {
         return nothing(Statistics::default());
     };
@@ -299,7 +296,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let against_head =
         ChartPanel::new("back pressure, −10^{3} *g* *t*^{2}/*d*", &flow).with_all(numbered(series));
     draft.chart("closure", &[], grid(2, [against_occlusion, against_head]))?;
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q13_NEEDED))
+    Ok(draft.concluded(Verdict::Answered, summary, statistics))
 }
 
 /// The places against heads, by ascending head, of each occlusion at which enough were tried.

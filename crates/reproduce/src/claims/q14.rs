@@ -7,7 +7,8 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("q14.md"));
 const STUDIES: &[&str] = &["segments", "segments-wave"];
 
-pub(super) const CLAIM: Claim = Claim::new("Q14", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q14", PROSE, STUDIES, examine).varying("back pressure", Q14_NEEDED);
 
 /// The smooth wave that opens the tube as little as segments do.
 const WAVE: &str = "bolus";
@@ -157,18 +158,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let statistics = behind(&of_segments, |row| row.number_or("body_force", 0.0));
     let by_duty = grouped(of_segments.iter().copied(), |row| row.number("drive.duty"));
     let Some((duty, pressed)) = by_duty.last() else {
-        return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     };
-    let most = |column| {
-        let numbers = pressed.iter().map(|row| row.number(column));
-        numbers.fold(0.0, f64::max)
-    };
+    let most = |column| largest(pressed, |row| row.number(column));
     let overlap = number(most("largest_overlap"), 2);
     let often = number(100.0 * most("pressed"), 0);
     let (segments, waves) = (segments(of_segments), waves(of_waves));
     let wave = waves.iter().find(|drive| drive.name == WAVE);
     let Some(wave) = wave else {
-        return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     };
     let mut same: Vec<&Drive> = segments
         .iter()
@@ -179,9 +177,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let along = same.iter().find(|drive| drive.is_along()).copied();
     same.sort_by(|one, other| order_of(one).total_cmp(&order_of(other)));
     let (Some(along), [worst, .., best]) = (along, &same[..]) else {
-        return Ok(PROSE.nothing(statistics, &Q14_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     };
-    let mut draft = Draft::of(PROSE).varying("back pressure");
+    let mut draft = Draft::of(PROSE);
     draft.weakness("pressed", values!(duty = number(*duty, 2), overlap, often));
     for drive in [along, wave] {
         let name = &drive.name;
@@ -245,7 +243,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = waves.iter().chain(&segments).map(Drive::cells);
     draft.table("sequences", &[], rows);
     draft.chart("sequences", &[], ChartFigure::new(orders(&same, wave)))?;
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q14_NEEDED))
+    Ok(draft.concluded(Verdict::Answered, summary, statistics))
 }
 
 /// What drives are ordered by: their flow without head.

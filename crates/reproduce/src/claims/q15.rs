@@ -9,7 +9,8 @@ const PROSE: Prose = Prose::new(include_str!("q15.md"));
 /// Against the outlet, wide and small, against the filling, against the feed.
 const STUDIES: &[&str] = &["silo", "silo-arches", "silo-head", "silo-feed"];
 
-pub(super) const CLAIM: Claim = Claim::new("Q15", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q15", PROSE, STUDIES, examine).varying("outlet", Q15_NEEDED);
 
 /// Beverloo's exponent.
 const EXPONENT: f64 = 2.5;
@@ -170,9 +171,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .filter(|it| it.at > OPEN && it.rate.value > 0.0)
         .collect();
     let Some(law) = Beverloo::fitted(&open) else {
-        return Ok(PROSE.nothing(statistics, &Q15_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     };
-    let mut draft = Draft::of(PROSE).varying("outlet");
+    let mut draft = Draft::of(PROSE);
     draft.compared("exponent", &[], law.exponent, EXPONENT);
     draft.quantity("offset", &[], law.offset);
     draft.table(
@@ -236,7 +237,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             rest
         ),
     );
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q15_NEEDED))
+    Ok(draft.concluded(Verdict::Answered, summary, statistics))
 }
 
 /// How the rate depends on the filling: by how much it varies above one bore, and what the lowest filling discharges.

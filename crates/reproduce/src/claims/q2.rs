@@ -17,7 +17,8 @@ const STUDIES: &[&str] = &[
     "wavelength",
 ];
 
-pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q2", PROSE, STUDIES, examine).varying("width", Q2_NEEDED);
 
 /// How deep a grain sinks between three wall spheres \[d\], all of one diameter: d − (d² − s²)^{1/2}, s the circumradius of
 /// the triangle that two neighbours of a ring make with one of the next. Larger spacings than d let a grain through.
@@ -93,7 +94,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         walls.extend(of_rate);
     }
     if ends.is_empty() {
-        return Ok(PROSE.nothing(Statistics::default(), &Q2_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let verdict = Verdict::answered_if(lattices >= LEAST_LATTICES);
     let summary = PROSE.text("summary", values!(ends = ends.join(" and ")));
@@ -109,14 +110,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let of_one_speed = |row: &Row<'_>| (row.wave_speed() - 1.0).abs() < 1e-6;
     let mut waves = evidence.study("wavelength")?.rows();
     waves.retain(of_one_speed);
-    let mut others = evidence.study("walls")?.rows();
-    for study in ["walls-dense", "walls-drawn", "walls-sought"] {
-        others.extend(evidence.study(study)?.rows());
-    }
+    let others = evidence.rows(&["walls", "walls-dense", "walls-drawn", "walls-sought"])?;
     candidates(&mut draft, others, &waves);
     draft.table("lattices", &[], walls.iter().map(Wall::row));
     draft.chart("roughness", &[], ChartFigure::new(panel))?;
-    Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// Waves in the tubes of the presets, and the volume fraction of their grains.
@@ -173,7 +171,7 @@ impl Candidate {
             name,
             density: first.wall_density(),
             slope: line.map(|line| line.line.slope),
-            power: power_of_rate(&amplitudes),
+            power: fitted_power(amplitudes),
             escaped,
         })
     }
@@ -215,13 +213,8 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
     found.sort_by(|one, other| one.density.total_cmp(&other.density));
     for one in &found {
         let wall = &one.name;
-        let slope = one.slope;
-        let slope = slope.map(|ours| PROSE.quantity("slope", values!(wall), ours));
-        let power = one.power;
-        let power = power.map(|ours| PROSE.quantity("power", values!(wall), ours));
-        let quantities = &mut draft.finding.quantities;
-        quantities.extend(slope.map(|slope| slope.sourced(SLOPE)));
-        quantities.extend(power.map(|power| power.sourced(AMPLITUDE)));
+        draft.compared("slope", values!(wall), one.slope, SLOPE);
+        draft.compared("power", values!(wall), one.power, AMPLITUDE);
     }
     let has_slope = |one: &Candidate| one.slope.and_then(|ours| agrees(&ours, SLOPE));
     let has_power = |one: &Candidate| one.power.and_then(|ours| agrees(&ours, AMPLITUDE));
@@ -234,12 +227,9 @@ fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
         }
     };
     let (slopes, powers) = (named(&has_slope), named(&has_power));
-    let all = found.iter().filter_map(|one| one.power);
-    let [least, most] = all.fold(
-        [f64::INFINITY, f64::NEG_INFINITY],
-        |[least, most], power| [least.min(power.value), most.max(power.value)],
-    );
-    let [least, most] = [least, most].map(|power| number(power, 1));
+    let powers_found = found.iter().filter_map(|one| one.power);
+    let [least, most] =
+        extremes(powers_found.map(|power| power.value)).map(|power| number(power, 1));
     draft.paragraph("candidates", values!(slopes, powers, least, most));
     let by_length = Candidate::of(PROSE.text("by length", &[]), waves);
     if let Some(one) = &by_length {

@@ -5,7 +5,8 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("q3.md"));
 const STUDIES: &[&str] = &["restitution", "softness", "wavelength", "radius"];
 
-pub(super) const CLAIM: Claim = Claim::new("Q3", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q3", PROSE, STUDIES, examine).varying("width", Q3_NEEDED);
 
 /// One parameter that is varied, in a study of its name.
 struct Varied {
@@ -136,7 +137,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         }
     }
     if found.is_empty() {
-        return Ok(PROSE.nothing(Statistics::default(), &Q3_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let spans = found.iter().flat_map(|(varied, of)| {
         let series = varied.series.iter();
@@ -170,7 +171,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let chart = grid(2, panels).legend(LegendPlace::Below);
     draft.chart("softness-or-geometry", &[], chart)?;
     let verdict = Verdict::answered_if(is_known);
-    Ok(draft.concluded(verdict, summary, statistics, &Q3_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// The largest less the smallest w_c/(2 a); `None` of fewer than two.

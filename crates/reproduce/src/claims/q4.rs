@@ -10,7 +10,8 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q4.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("Q4", PROSE, &["length"], examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q4", PROSE, &["length"], examine).varying("width", Q4_NEEDED);
 
 /// A tube of some length.
 struct Tube<'a> {
@@ -83,7 +84,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .filter_map(|(waves, rows)| Tube::of(*waves, rows))
         .collect();
     if tubes.len() < 2 {
-        return Ok(PROSE.nothing(Statistics::default(), &Q4_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let exponents = exponents(&tubes);
     let of_widths: Vec<Uncertain> = exponents.iter().map(|one| one.1).collect();
@@ -104,7 +105,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.table("lengths", &[], tubes.iter().map(Tube::row));
     draft.chart("length", &[], figure(&tubes))?;
     space_time(&mut draft, study)?;
-    Ok(draft.concluded(verdict, summary, statistics, &Q4_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// Exponent of tau in the length at every width that several lengths share.

@@ -82,9 +82,8 @@ impl<'a> Compared<'a> {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let needed = Statistics::FOR_A_VERDICT;
     let walls = OnWall::<Line<'_>>::all(evidence)?;
-    let statistics = best(walls.iter().map(OnWall::statistics), &needed);
+    let statistics = best(walls.iter().map(OnWall::statistics), &CLAIM.needed);
     let (mut draft, mut compared) = (Draft::of(PROSE), Vec::new());
     let (mut all, mut excluded) = (0, 0);
     for one in &walls {
@@ -100,7 +99,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         compared.extend(one.scattered().filter_map(laws));
     }
     if compared.is_empty() {
-        return Ok(PROSE.nothing(statistics, &needed));
+        return Ok(PROSE.nothing(statistics));
     }
     let good = |laws: &[Law]| compared.iter().filter(|one| one.is_good(laws)).count();
     let with_power = |one: &&Compared<'_>| one.excess(Law::Power).is_some();
@@ -131,7 +130,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let (wall, rate) = (of.wall, of.line.strain_rate);
         draft.chart("survival", values!(wall, rate), chart)?;
     }
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &needed))
+    Ok(draft.concluded(Verdict::Answered, summary, statistics))
 }
 
 fn relative_variance(draft: &mut Draft, compared: &[Compared<'_>]) -> Result<()> {

@@ -6,7 +6,8 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q6.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("Q6", PROSE, &["back-flow"], examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q6", PROSE, &["back-flow"], examine).varying("friction", Q6_NEEDED);
 
 /// Column of the coefficient of static friction.
 const FRICTION: &str = "contact.static_friction";
@@ -190,13 +191,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let samples = Samples::of(results);
     let statistics = samples.statistics();
     let Some(preset) = samples.at(PRESET) else {
-        return Ok(PROSE.nothing(statistics, &Q6_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     };
     let at_friction = |friction| samples.at(Point { friction, ..PRESET });
     let at_tether = |tether| samples.at(Point { tether, ..PRESET });
     let (without, pinned) = (at_friction(0.0), at_tether(PINNED));
     let summary = of_friction(preset, without) + &of_wall(preset, pinned);
-    let mut draft = Draft::of(PROSE).varying("friction");
+    let mut draft = Draft::of(PROSE);
     let balance = balance(preset, FreeFlight::of(results, preset)?);
     draft.finding.paragraphs.splice(0..0, balance);
     let points = [
@@ -212,7 +213,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.table("forces", &[], samples.0.iter().map(Sampled::row));
     figures::causes(&mut draft, &samples)?;
     figures::balance(&mut draft, results, &samples)?;
-    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q6_NEEDED))
+    Ok(draft.concluded(Verdict::Answered, summary, statistics))
 }
 
 /// What friction has to do with it.

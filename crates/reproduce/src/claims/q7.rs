@@ -7,7 +7,8 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("q7.md"));
 const STUDIES: &[&str] = &["two-by-two-strain", "two-by-two-stress"];
 
-pub(super) const CLAIM: Claim = Claim::new("Q7", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q7", PROSE, STUDIES, examine).varying("bottleneck", Q7_NEEDED);
 
 /// How the wall is driven.
 struct Wall {
@@ -197,7 +198,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         corners.extend(Corner::all_of(wall, evidence.study(wall.study)?.rows()));
     }
     if corners.is_empty() {
-        return Ok(PROSE.nothing(Statistics::default(), &Q7_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let statistics = Statistics::weakest_at_one_rate(corners.iter().map(Corner::statistics));
     let verdict = Verdict::answered_if(corners.len() == 4);
@@ -205,7 +206,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let bistable = where_seen(&corners, Corner::is_bistable);
     let back = where_seen(&corners, Corner::flows_back);
     let summary = PROSE.text("summary", values!(fast, bistable, back));
-    let mut draft = Draft::of(PROSE).varying("bottleneck");
+    let mut draft = Draft::of(PROSE);
     for one in &corners {
         let lowest = one.flow.lowest().map(|point| point.flow);
         let (gap, corner) = (one.flow.gap().map(|gap| gap.height), one.name());
@@ -218,5 +219,5 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.weakness("left out", values!(states = left_out));
     }
     draft.chart("two-by-two", &[], figures::chart(&corners))?;
-    Ok(draft.concluded(verdict, summary, statistics, &Q7_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }

@@ -2,14 +2,13 @@
 
 mod figures;
 
-use peristalsis_analysis::power_exponent;
-
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q8.md"));
 const STUDIES: &[&str] = &["small-speed-size", "sweep-up", "sweep-down"];
 
-pub(super) const CLAIM: Claim = Claim::new("Q8", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q8", PROSE, STUDIES, examine).varying("force", Q8_NEEDED);
 
 /// Part of the runs, at their end, over which the study takes its means.
 const LATE: f64 = 0.5;
@@ -117,11 +116,7 @@ impl Loop {
                 periods,
                 up: mean_of(&up, passed),
                 down: mean_of(down, passed),
-                escaped: up
-                    .iter()
-                    .chain(down)
-                    .map(Row::escaped_fraction)
-                    .fold(0.0, f64::max),
+                escaped: largest(up.iter().chain(down), Row::escaped_fraction),
                 censored: [&up, down].map(|rows| {
                     let censored = |row: &&Row<'_>| !passed(row).0.is_finite();
                     rows.iter().filter(censored).count()
@@ -164,14 +159,6 @@ fn passed(row: &Row<'_>) -> (f64, f64) {
         from + (to - from) * progress.clamp(0.0, 1.0),
         0.5 * (to - from).abs() / end,
     )
-}
-
-/// Exponent of a positive quantity in another, from points with errors; `None` from fewer than three.
-fn exponent(points: impl Iterator<Item = (f64, Uncertain)>) -> Option<Uncertain> {
-    let known = points.filter(|(_, mean)| mean.value > 0.0 && mean.error > 0.0);
-    let [x, y, error] = columns(known, 0.0);
-    let line = power_exponent(&x, &y, &error).ok()?;
-    (x.len() > 2).then(|| slope(&line))
 }
 
 /// What was found at one strain rate.
@@ -235,11 +222,11 @@ impl<'b, 'a> AtRate<'b, 'a> {
         let sizes = self.sizes.iter();
         let force = self.fluctuating_force().unwrap_or(f64::NAN);
         let fluctuations = sizes.filter_map(|one| Some((one.waves, one.fluctuation_at(force)?)));
-        let of_size = exponent(fluctuations);
+        let of_size = fitted_power(fluctuations);
         draft.quantity("exponent of fluctuation", values!(rate), of_size);
         let loops = self.loops.iter();
         let widths = loops.filter_map(|one| Some((one.periods, one.width()?)));
-        draft.quantity("exponent of loop", values!(rate), exponent(widths));
+        draft.quantity("exponent of loop", values!(rate), fitted_power(widths));
         for one in &self.sizes {
             let height = one.rise().map(|rise| rise.height);
             draft.quantity("rise", values!(rate, waves = one.waves), height);
@@ -262,12 +249,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         ..Statistics::weakest(of_sizes)
     };
     if rates.is_empty() {
-        return Ok(PROSE.nothing(statistics, &Q8_NEEDED));
+        return Ok(PROSE.nothing(statistics));
     }
     let words: Vec<String> = rates.iter().map(AtRate::words).collect();
     let verdict = Verdict::answered_if(rates.iter().all(AtRate::is_complete));
     let summary = format!("{}.", words.join(". "));
-    let mut draft = Draft::of(PROSE).varying("force");
+    let mut draft = Draft::of(PROSE);
     for at in &rates {
         at.add_quantities(&mut draft);
     }
@@ -299,5 +286,5 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .legend(LegendPlace::Below);
         draft.chart("small-speed", values!(passed), chart)?;
     }
-    Ok(draft.concluded(verdict, summary, statistics, &Q8_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }

@@ -10,7 +10,8 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("q9.md"));
 const STUDIES: &[&str] = &["pumping-frictionless", "pumping-frictional"];
 
-pub(super) const CLAIM: Claim = Claim::new("Q9", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q9", PROSE, STUDIES, examine).varying("back pressure", Q9_NEEDED);
 
 /// The waveforms in the order of series.
 const WAVEFORMS: [&str; 3] = ["sine", "bolus", "roller"];
@@ -68,11 +69,7 @@ fn efficiency(point: &Point<'_>) -> Option<Uncertain> {
 
 /// Largest part of the grains outside in any of these runs.
 fn outside(point: &Point<'_>) -> f64 {
-    point
-        .rows
-        .iter()
-        .map(Row::escaped_fraction)
-        .fold(0.0, f64::max)
+    largest(&point.rows, Row::escaped_fraction)
 }
 
 /// Time that a grain takes through one wavelength, in periods of the wave.
@@ -255,7 +252,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         pumps.extend(Pump::of(model, evidence.study(model.study)?));
     }
     if pumps.is_empty() {
-        return Ok(PROSE.nothing(Statistics::default(), &Q9_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let words: Vec<String> = pumps.iter().filter_map(Pump::words).collect();
     let all = pumps.len() == MODELS.len() && words.len() == pumps.len();
@@ -265,7 +262,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         words => format!("{words}."),
     };
     let statistics = Statistics::weakest_at_one_rate(pumps.iter().map(Pump::statistics));
-    let mut draft = Draft::of(PROSE).varying("back pressure");
+    let mut draft = Draft::of(PROSE);
     for pump in &pumps {
         let (sine, name) = (pump.sine(), pump.model.name);
         let unit = pump.model.units.pressure().replace('*', "");
@@ -293,5 +290,5 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.chart("pump-characteristic", &[], figures::characteristic(&pumps))?;
     figures::on_the_wall(&mut draft, &pumps)?;
-    Ok(draft.concluded(verdict, summary, statistics, &Q9_NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }

@@ -9,8 +9,7 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("s1.md"));
 
-pub(super) const CLAIM: Claim =
-    Claim::new("S1", PROSE, &["elastic-flow", "elastic-branches"], examine);
+pub(super) const CLAIM: Claim = claim("S1", PROSE, &["elastic-flow", "elastic-branches"], examine);
 
 /// One of the pictures.
 struct Scene<'a> {
@@ -73,7 +72,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let study = evidence.study("elastic-flow")?;
     let scenes = Scene::all_of(study.rows());
     let Some(first) = scenes.first() else {
-        return Ok(nothing(&PROSE));
+        return Ok(PROSE.nothing(Statistics::default()));
     };
     let outcomes = scenes.iter().map(|scene| scene.holds(first.force));
     let outcomes: Vec<Option<bool>> = outcomes.collect();
@@ -86,7 +85,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let flows: Vec<String> = scenes.iter().map(flow).collect();
     let lines = ForceLine::all_of(&evidence.study("elastic-branches")?.rows());
     let summary = PROSE.text("summary", values!(flows = flows.join(", ")));
-    let mut draft = draft(PROSE);
+    let mut draft = Draft::of(PROSE);
     for scene in &scenes {
         let (name, runs) = (scene.name(), scene.rows.len());
         draft.quantity("flow rate", values!(scene = name, runs), scene.flow);
@@ -105,7 +104,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.table("grains of the pictures", &[], against_the_wave(&pictures)?);
         draft.finding.figures.push(flow_fields(&pictures)?);
     }
-    Ok(draft.concluded(verdict, summary, statistics(&lines, &scenes), &NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics(&lines, &scenes)))
 }
 
 /// The pictures are of one strain rate: forces and strain rates are those of the branches, whose flows these are; replicates

@@ -9,7 +9,7 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("s2.md"));
 const STUDIES: &[&str] = &["elastic-yielding", "elastic-branches"];
 
-pub(super) const CLAIM: Claim = Claim::new("S2", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim = claim("S2", PROSE, STUDIES, examine);
 
 /// The runs from jammed at one force.
 struct AtForce<'a> {
@@ -95,7 +95,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (rows, branches) = (study.rows(), evidence.study("elastic-branches")?.rows());
     let jams = AtForce::all_of(&rows);
     if jams.is_empty() {
-        return Ok(nothing(&PROSE));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let gives_way = jams.iter().rfind(|one| one.most_yield());
     let lasts = jams.iter().find(|one| one.times.is_empty());
@@ -113,7 +113,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     });
     let lines = ForceLine::all_of(&branches);
     let summary = PROSE.text("summary", values!(periods, yielding, lasting));
-    let mut draft = draft(PROSE);
+    let mut draft = Draft::of(PROSE);
     for one in &jams {
         let (force, runs) = (one.force, one.rows.len());
         let censored = runs - one.times.len();
@@ -139,7 +139,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     draft.chart("yielding", values!(shown), chart)?;
     let statistics = together(judged(&lines));
-    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// J(t) of one run a force, and the time until the jam gives way against the force.

@@ -6,14 +6,14 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("s3.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("S3", PROSE, BRANCHES, examine);
+pub(super) const CLAIM: Claim = claim("S3", PROSE, BRANCHES, examine);
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let rows = branch_rows(evidence)?;
+    let rows = evidence.rows(BRANCHES)?;
     let lines = ForceLine::all_of(&rows);
     let tight = judged(&lines);
     if tight.is_empty() {
-        return Ok(nothing(&PROSE));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let of_kind = |kind: Kind, replicates: usize| -> Vec<f64> {
         let lines = tight
@@ -23,9 +23,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     // The interval rests on strain rates with replicates; single runs are told and drawn.
     let [firm_jumps, firm_smooth] =
-        [Kind::Jump, Kind::Smooth].map(|kind| of_kind(kind, NEEDED.replicates));
+        [Kind::Jump, Kind::Smooth].map(|kind| of_kind(kind, CLAIM.needed.replicates));
     let vanishing = vanishing(&firm_jumps, &firm_smooth);
-    let is_firm = |line: &&&ForceLine<'_>| line.statistics.replicates >= NEEDED.replicates;
+    let is_firm = |line: &&&ForceLine<'_>| line.statistics.replicates >= CLAIM.needed.replicates;
     let firm = tight.iter().filter(is_firm).count();
     let verdict = if vanishing.is_some() {
         Verdict::Reproduced
@@ -46,7 +46,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         summary = format!("{summary} {sentence}");
     }
     let statistics = together(tight.iter().copied());
-    let mut draft = draft(PROSE);
+    let mut draft = Draft::of(PROSE);
     draft.quantity("vanishing", &[], vanishing);
     for line in &tight {
         draft.quantity("height", values!(rate = line.strain_rate), line.height());
@@ -63,7 +63,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let chart = grid(2, panels);
         draft.chart("peaks-against-force", &[], chart)?;
     }
-    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// The bracket of the strain rate at which the jump vanishes: all that jump are faster than all that do not.

@@ -5,7 +5,7 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("s4.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("S4", PROSE, BRANCHES, examine);
+pub(super) const CLAIM: Claim = claim("S4", PROSE, BRANCHES, examine);
 
 /// The forces at which the flow of a line is negative from rest and, where that start was run too, from jammed, unless the
 /// jam lasts there.
@@ -31,11 +31,11 @@ fn forces(line: &ForceLine<'_>) -> Vec<f64> {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let rows = branch_rows(evidence)?;
+    let rows = evidence.rows(BRANCHES)?;
     let lines = ForceLine::all_of(&rows);
     let drawn = judged(&lines);
     if drawn.is_empty() {
-        return Ok(nothing(&PROSE));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let counting = ForceLine::all_of(&counting(&rows));
     let tight = judged(&counting);
@@ -49,7 +49,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         Verdict::Reproduced
     };
     let statistics = together(drawn.iter().copied());
-    let mut draft = draft(PROSE);
+    let mut draft = Draft::of(PROSE);
     let lowest = |line: &&ForceLine<'_>| {
         let point = line.flow.lowest()?;
         Some((line.strain_rate, point.control, point.flow))
@@ -82,7 +82,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (least, clear) = (LEAST_BACK_FLOW, CLEAR);
     draft.chart("back-flow", values!(least, clear), chart)?;
     let summary = summary(&backward, &forward);
-    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// The strain rates of some lines in words.

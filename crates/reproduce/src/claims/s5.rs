@@ -13,7 +13,7 @@ const STUDIES: &[&str] = &[
     "branches-*",
 ];
 
-pub(super) const CLAIM: Claim = Claim::new("S5", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim = claim("S5", PROSE, STUDIES, examine);
 
 /// A line of frictionless grains with that of frictional ones at the same strain rate, where there is one.
 type Pair<'b, 'a> = (&'b ForceLine<'a>, Option<&'b ForceLine<'a>>);
@@ -23,9 +23,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let lines = ForceLine::all_of(&rows);
     let tight = judged(&lines);
     if tight.is_empty() {
-        return Ok(nothing(&PROSE));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
-    let frictional = ForceLine::all_of(&branch_rows(evidence)?);
+    let frictional = ForceLine::all_of(&evidence.rows(BRANCHES)?);
     let beside = |line: &ForceLine<'_>| {
         let mut others = frictional.iter();
         others.find(|other| other.strain_rate == line.strain_rate)
@@ -43,7 +43,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     let statistics = together(tight.iter().copied());
     let summary = summary(&counting, flows_back);
-    let mut draft = draft(PROSE);
+    let mut draft = Draft::of(PROSE);
     let compared = pairs.iter().flat_map(compared);
     for (rate, without, with) in compared.filter(|(.., with)| with.flow.value < 0.0) {
         let (force, more) = (without.control, without.flow - with.flow);
@@ -55,7 +55,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.weakness("prescribed", values!(flows));
     }
     draft.chart("frictionless", &[], figure(&lines, &pairs))?;
-    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// Whether any flow is negative, and the smallest of them.

@@ -17,7 +17,7 @@ const STUDIES: &[&str] = &[
     "two-by-two-stress",
 ];
 
-pub(super) const CLAIM: Claim = Claim::new("S6", PROSE, STUDIES, examine);
+pub(super) const CLAIM: Claim = claim("S6", PROSE, STUDIES, examine);
 
 /// Symbol of a number, and its value in a run.
 type Number = (&'static str, fn(&Row<'_>) -> f64);
@@ -211,7 +211,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let lines = ForceLine::all_of(&branches);
     let flows = [frictional(&lines), frictionless(&prescribed.rows())];
     if flows.iter().any(Vec::is_empty) {
-        return Ok(nothing(&PROSE));
+        return Ok(PROSE.nothing(Statistics::default()));
     }
     let mut with_friction = evidence.study("two-by-two-stress")?.rows();
     with_friction.retain(|row| !is_frictionless(row));
@@ -235,7 +235,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     let count = places.count();
     let summary = PROSE.text("summary", values!(count));
-    let mut draft = draft(PROSE);
+    let mut draft = Draft::of(PROSE);
     for one in &matched {
         let (rate, bottleneck) = (one.strain_rate, rounded(one.bottleneck));
         for (grains, mean) in ["frictional", "frictionless"].iter().zip(one.means()) {
@@ -259,7 +259,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     figures::profiles(&mut draft, elastic, prescribed)?;
     let statistics = together(judged(&lines));
-    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
+    Ok(draft.concluded(verdict, summary, statistics))
 }
 
 /// Velocities in the throat of both models against the bottleneck, a panel for each strain rate.

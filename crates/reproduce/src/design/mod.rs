@@ -21,6 +21,7 @@ pub use published::{
 };
 
 use crate::Start;
+use crate::row::extremes;
 use crate::thresholds::{FAST, SLOW, SPLIT, UNJAMMED};
 
 /// Grains smaller than this \[m\] cohere and feel the air: Geldart's groups A and C (Powder Technol. 7, 285 (1973)).
@@ -129,10 +130,7 @@ impl Design {
 }
 
 fn compare(group: &Group, value: f64, points: &[Point], place: usize) -> Compared {
-    let published = points.iter().map(|point| point.groups[place]);
-    let published = published.fold([f64::INFINITY, f64::NEG_INFINITY], |range, it| {
-        [range[0].min(it), range[1].max(it)]
-    });
+    let published = extremes(points.iter().map(|point| point.groups[place]));
     Compared {
         name: group.name,
         meaning: group.meaning,

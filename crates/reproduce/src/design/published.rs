@@ -10,7 +10,7 @@ use peristalsis_physics::wall::Arrangement;
 use serde::Serialize;
 
 use super::groups::{ALL, GROUPS, groups};
-use crate::row::{Row, rows_of};
+use crate::row::{Row, extremes, rows_of};
 use crate::thresholds::MOST_ESCAPED;
 use crate::{Size, Start, StudyFile};
 
@@ -150,17 +150,13 @@ pub fn expectation(points: &[Point], groups: &[f64; GROUPS], start: Start) -> Op
         .filter(|it| counts(it.0))
         .map(|it| it.1)
         .collect();
-    let flows = counted.iter().map(|point| point.flow);
-    let range = flows.fold([f64::INFINITY, f64::NEG_INFINITY], |range, flow| {
-        [range[0].min(flow), range[1].max(flow)]
-    });
     let mut studies: Vec<String> = counted.iter().map(|point| point.study.clone()).collect();
     studies.sort();
     studies.dedup();
     Some(Expectation {
         flow_rate_ratio: flow,
         error: (variance + LEAST_ERROR * LEAST_ERROR).sqrt() * least.max(1.0),
-        range,
+        range: extremes(counted.iter().map(|point| point.flow)),
         distance: least,
         points: counted.len(),
         studies,

@@ -92,13 +92,12 @@ fn overview(report: &Report) -> ReportTable {
 
 /// A number with its name, its error and the value of the source.
 fn number_of(quantity: &Quantity) -> String {
-    let ours = quantity.ours.as_ref();
-    let ours = ours.map_or_else(|| "not determined".to_owned(), ToString::to_string);
-    let source = quantity
-        .source
-        .map(|source| format!(" (source: {})", plain(source)));
-    let name = format!("{}: {ours}{}", quantity.name, source.unwrap_or_default());
-    markdown(&name)
+    let [_, ours, source] = cells(quantity);
+    let source = match &*source {
+        "" => source,
+        source => format!(" (source: {source})"),
+    };
+    markdown(&format!("{}: {ours}{source}", quantity.name))
 }
 
 /// What is said of a claim.
@@ -120,7 +119,7 @@ fn section(examination: &Examination, file: Option<&str>, figures: &str) -> Stri
         Some(failure) => format!("It could not be examined: {failure}"),
         None => finding.summary.clone(),
     };
-    let (verdict, needed) = (finding.verdict.name(), finding.needed);
+    let (verdict, needed) = (finding.verdict.name(), claim.needed);
     let takes = match needed == Statistics::FOR_A_VERDICT {
         true => String::new(),
         false => format!(" ({needed})"),

@@ -50,12 +50,7 @@ mod tests {
     }
 
     fn claim(id: &'static str, studies: &'static [&'static str]) -> Claim {
-        Claim {
-            id,
-            prose: crate::Prose::new(""),
-            studies,
-            examine: unexamined,
-        }
+        Claim::new(id, crate::Prose::new(""), studies, unexamined)
     }
 
     #[test]

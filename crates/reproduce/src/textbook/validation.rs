@@ -10,6 +10,7 @@ use crate::check::verdict;
 use crate::error::{Result, make_folder};
 use crate::examination::without_panic;
 use crate::report::{json_text, markdown, write_drawing};
+use crate::row::extremes;
 use crate::textbook::case::{Case, Circumstances};
 use crate::{Check, Convergence, Examination, ReportTable, ReproduceError, Size};
 
@@ -140,9 +141,8 @@ impl Validation {
             let finding = &examination.finding;
             let checks = finding.checks.iter();
             let used = checks.map(|check| check.deviation / check.tolerance);
-            let orders = || finding.convergences.iter().filter_map(|one| one.order);
-            let least = orders().fold(f64::INFINITY, f64::min);
-            let largest = orders().fold(f64::NEG_INFINITY, f64::max);
+            let orders = finding.convergences.iter().filter_map(|one| one.order);
+            let [least, largest] = extremes(orders);
             let orders = if least > largest {
                 "–".to_owned()
             } else {

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use peristalsis_formats::{Table, Values};
-use peristalsis_reproduce::{CLAIMS, Evidence, Finding, STUDIES, Verdict};
+use peristalsis_reproduce::{CLAIMS, Claim, Evidence, Finding, STUDIES, Verdict};
 
 /// Columns of whole numbers that every row has.
 const WHOLE: [&str; 6] = peristalsis_reproduce::Row::WHOLE_NUMBERS;
@@ -148,8 +148,12 @@ pub(crate) fn evidence(studies: &[(&str, &Rows)]) -> Evidence {
 
 /// What a claim says of some studies.
 pub(crate) fn examine(id: &str, evidence: &Evidence) -> Finding {
-    let claim = CLAIMS.iter().find(|claim| claim.id == id).unwrap();
-    (claim.examine)(evidence).unwrap()
+    claim(id).examine(evidence).unwrap()
+}
+
+/// A claim by its name.
+pub(crate) fn claim(id: &str) -> &'static Claim {
+    CLAIMS.iter().find(|claim| claim.id == id).unwrap()
 }
 
 /// Asserts a verdict; where it differs, says what was found.

@@ -4,8 +4,7 @@ use core::f64::consts::PI;
 
 use peristalsis_observe::{Sample, clear_volume_of_wave};
 
-use super::late::{error_of, frequency};
-use super::mean_of;
+use super::late::{frequency, measured};
 use crate::run::Run;
 
 /// The flow through an open tube: late means, each with its error from block averages. Units: d, m, t.
@@ -37,8 +36,7 @@ impl Discharge {
     pub(super) fn of(run: &Run, late: &[Sample]) -> Option<Self> {
         let simulation = run.simulation();
         let ends = simulation.ends()?;
-        let measured =
-            |value: fn(&Sample) -> f64| (mean_of(late, value), error_of(late.iter().map(value)));
+        let measured = |value: fn(&Sample) -> f64| measured(late, value);
         let times = ends.transit_times();
         let (passed, variance) = (times.number(), times.variance());
         let rate = measured(|sample| sample.discharge_rate);

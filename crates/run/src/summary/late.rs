@@ -14,6 +14,12 @@ pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
     mean_with_error(&series).map_or(f64::NAN, |estimate| estimate.error)
 }
 
+/// Mean over the late samples, and its error.
+pub(super) fn measured(late: &[Sample], value: impl Fn(&Sample) -> f64) -> (f64, f64) {
+    let values: Vec<f64> = late.iter().map(value).collect();
+    (super::mean(&values), error_of(values.into_iter()))
+}
+
 /// J/Jmax of each late sample, of the grains inside and of all.
 ///
 /// Of a wave that changes its speed, and where a sample has none, it is J over the mean of Jmax = N c/L, with c the mean
@@ -69,7 +75,7 @@ pub(super) fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
 /// Late mean of what flows against the wave: of -J where J < 0 and else 0, each J over the time of a sample \[1/t\].
 pub(super) fn back_flow(late: &[Sample]) -> (f64, f64) {
     let back = |sample: &Sample| (-sample.flow_rate).max(0.0);
-    (mean_of(late, back), error_of(late.iter().map(back)))
+    measured(late, back)
 }
 
 /// Overlap from which on a grain counts as pressed \[d\]: below a tenth, soft grains pass for solid ones.
@@ -109,7 +115,8 @@ impl Pumping {
             // That of the rest of gravity is not pumping.
             _ => force * sample.mass_flow_rate * length,
         };
-        let useful_power = -mean_of(late, power);
+        let (power_in, power_error) = measured(late, power);
+        let useful_power = -power_in;
         let wall_power = mean_of(late, |sample| sample.wall_power);
         let efficiency = if useful_power > 0.0 && wall_power > 0.0 {
             useful_power / wall_power
@@ -117,7 +124,6 @@ impl Pumping {
             f64::NAN
         };
         let beyond = |sample: &Sample| -power(sample) - efficiency * sample.wall_power;
-        let power_error = error_of(late.iter().map(power));
         let in_tube = match configuration.inlet {
             // Grains come and go: those that are there count.
             Some(_) => mean_of(late, |sample| sample.hold_up) / total_mass(configuration),
@@ -201,8 +207,7 @@ impl Wear {
 pub(super) fn wall_torque(samples: &[Sample], late: &[Sample]) -> Option<(f64, f64)> {
     let frequency = frequency(samples, late);
     let per_power = 1.0 / (TAU * frequency);
-    let power = mean_of(late, |sample| sample.wall_power);
-    let error = error_of(late.iter().map(|sample| sample.wall_power));
+    let (power, error) = measured(late, |sample| sample.wall_power);
     (frequency > 0.0).then_some((per_power * power, per_power * error))
 }
 

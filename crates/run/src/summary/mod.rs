@@ -17,7 +17,7 @@ use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 pub use arrangement::{MixedGrains, SegregatedSizes};
 pub use discharge::Discharge;
 pub use label::label;
-use late::{ForceOfContacts, axial_dispersion, error_of, residence_time, wall_torque};
+use late::{ForceOfContacts, axial_dispersion, residence_time, wall_torque};
 pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;
 pub use written::{RowColumn, SummaryKey, row_columns, set_by, summary_keys, summary_schema};
@@ -248,9 +248,9 @@ impl Summary {
 
     /// Late mean of the mass that flows and its error \[m/t\].
     pub fn mass_flow_rate(&self) -> (f64, f64) {
-        let rate = |sample: &Sample| sample.mass_flow_rate;
+        let (rate, error) = late::measured(&self.late, |sample| sample.mass_flow_rate);
         // No flow has no sign.
-        (self.mean(rate) + 0.0, error_of(self.late.iter().map(rate)))
+        (rate + 0.0, error)
     }
 
     /// The same \[kg/s\]; `None` where the configuration does not say its units.

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use peristalsis_configuration::{InitialState, PRESETS, schema_of};
+use peristalsis_configuration::{InitialState, preset_names, schema_of};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -37,10 +37,6 @@ pub(super) struct Keys {
 
 fn one() -> u32 {
     1
-}
-
-fn preset_names() -> Vec<&'static str> {
-    PRESETS.iter().map(|preset| preset.name).collect()
 }
 
 /// Adds points where the flow changes its kind: for each combination of the other axes, bisection between the values where

@@ -114,11 +114,6 @@ impl Recording {
         let sample = self.samples[..taken].last().filter(is_near);
         let head = Head {
             number: Some(number),
-            past: false,
-            epoch: 0,
-            playing: false,
-            ended: false,
-            speed: None,
             step: frame.step,
             time: frame.time,
             clock,
@@ -128,12 +123,11 @@ impl Recording {
             wall_spheres,
             rings,
             turning: frame.rotation.is_some(),
-            contacts: 0,
             driven: timeline.driven(clock),
             aims: timeline.driven(clock),
-            rows: Vec::new(),
             sample: sample.map(Into::into),
             warnings: self.warnings.clone(),
+            ..Head::default()
         };
         let ends = self.configuration.tube.ends;
         Ok(of_recording(&head, &frame, &self.wall, ends))

@@ -8,12 +8,8 @@ use crate::claims::prelude::*;
 
 /// Flow against the measured bottleneck, a panel a corner.
 pub(super) fn chart(corners: &[Corner<'_>]) -> ChartFigure {
-    let widths = || {
-        let points = corners.iter().flat_map(|corner| corner.flow.points());
-        points.map(|point| bottleneck(point).value)
-    };
-    let least = widths().fold(f64::INFINITY, f64::min);
-    let largest = widths().fold(0.0, f64::max);
+    let points = corners.iter().flat_map(|corner| corner.flow.points());
+    let [least, largest] = extremes(points.map(|point| bottleneck(point).value));
     let panels = corners.iter().map(|corner| panel(corner, least, largest));
     grid(2, panels)
         .share_x()

@@ -90,13 +90,13 @@ fn missing_figures(claim: &Claim, finding: &Finding) -> Markup {
 /// The runs behind the finding, and whether they are enough.
 fn statistics(examination: &Examination) -> Markup {
     let found = examination.finding.statistics;
-    let needed = examination.finding.needed;
+    let needed = examination.experiment.needed;
     html! {
         @if found.runs == 0 {
             p.statistics { "No finished runs yet." }
         } @else {
             p.statistics {
-                (counted(found.strain_rates, "strain rate")) " × " (counted(found.widths, examination.finding.varied)) " × "
+                (counted(found.strain_rates, "strain rate")) " × " (counted(found.widths, examination.experiment.varied)) " × "
                 (counted(found.replicates, "replicate")) ", " (counted(found.runs, "run")) " in all: "
                 @if examination.is_sufficient() { "enough for a verdict." }
                 @else {

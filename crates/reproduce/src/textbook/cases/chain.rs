@@ -141,14 +141,12 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         PROSE.chart("chain", &[], dispersion(&rows))?,
         PROSE.chart("chain-errors", &[], errors)?,
     ];
-    finding.data = Some(
-        Columns::of(&rows)
-            .word("law", "contact law", |row| row.law.to_owned())
-            .number("wavenumber", "1/a", "k a", |row| row.wavenumber)
-            .number("expected", "1/t", "frequency", |row| row.expected)
-            .number("found", "1/t", "frequency", |row| row.found)
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .word("law", "contact law", |row| row.law.to_owned())
+        .number("wavenumber", "1/a", "k a", |row| row.wavenumber)
+        .number("expected", "1/t", "frequency", |row| row.expected)
+        .number("found", "1/t", "frequency", |row| row.found)
+        .data()?;
     Ok(finding)
 }
 

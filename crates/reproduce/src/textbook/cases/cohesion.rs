@@ -129,21 +129,19 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         let check = Check::relative("restitution", &setting, 1.0, found, 5e-3);
         finding.checks.push(check.by("no loss"));
     }
-    finding.data = Some(
-        Columns::of(&rows)
-            .word("pull_off", "where the neck breaks", |row| match row.0 {
-                PullOff::Displacement => "displacement".into(),
-                PullOff::Force => "force".into(),
-            })
-            .number(
-                "speed",
-                "1",
-                "over the sticking speed under displacement control",
-                |row| row.1,
-            )
-            .number("restitution", "1", "0 where they stick", |row| row.2)
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .word("pull_off", "where the neck breaks", |row| match row.0 {
+            PullOff::Displacement => "displacement".into(),
+            PullOff::Force => "force".into(),
+        })
+        .number(
+            "speed",
+            "1",
+            "over the sticking speed under displacement control",
+            |row| row.1,
+        )
+        .number("restitution", "1", "0 where they stick", |row| row.2)
+        .data()?;
     finding.figures = vec![PROSE.chart("sticking", &[], drawing(&rows))?];
     Ok(finding)
 }

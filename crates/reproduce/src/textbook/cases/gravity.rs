@@ -72,12 +72,10 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
             }
         }
     }
-    finding.data = Some(
-        Columns::of(&rows)
-            .number("slope", "1", "tan(theta)", |row| row.0)
-            .number("acceleration", "1", "a/g", |row| row.1)
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .number("slope", "1", "tan(theta)", |row| row.0)
+        .number("acceleration", "1", "a/g", |row| row.1)
+        .data()?;
     finding.figures = vec![PROSE.chart("incline", &[], drawing(&rows))?];
     Ok(finding)
 }

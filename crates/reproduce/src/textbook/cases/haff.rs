@@ -139,14 +139,12 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         finding.checks.push(check.with_error(error));
     }
     finding.figures = vec![PROSE.chart("haff", &[], drawing(&rows))?];
-    finding.data = Some(
-        Columns::of(&rows)
-            .number("restitution", "", "e", |row| row.restitution)
-            .number("replicate", "", "number", |row| row.replicate as f64)
-            .number("time", "tau", "time", |row| row.time)
-            .number("temperature", "T_0", "temperature", |row| row.temperature)
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .number("restitution", "", "e", |row| row.restitution)
+        .number("replicate", "", "number", |row| row.replicate as f64)
+        .number("time", "tau", "time", |row| row.time)
+        .number("temperature", "T_0", "temperature", |row| row.temperature)
+        .data()?;
     Ok(finding)
 }
 

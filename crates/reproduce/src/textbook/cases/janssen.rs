@@ -2,7 +2,6 @@
 
 use peristalsis_analysis::mean_and_error;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Tint};
-use peristalsis_formats::Table;
 
 use super::plot::{closed_form, curve, named_once, open_if, points};
 use crate::columns::Columns;
@@ -173,7 +172,14 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         ("rough_fitted", &told[1][4]),
     ]);
     finding.checks = checks;
-    finding.data = Some(table(&rows)?);
+    finding.data = Columns::of(&rows)
+        .number("friction", "1", "mu", |row| row.column.friction)
+        .number("height", "D", "nominal", |row| row.column.height)
+        .number("seed", "", "number", |row| row.column.seed as f64)
+        .number("filling", "m", "M", |row| row.load.filling)
+        .number("apparent", "m", "M_app", |row| row.load.apparent)
+        .number("stress_ratio", "1", "K", |row| row.load.stress_ratio())
+        .data()?;
     finding.figures = vec![PROSE.chart("janssen", &[], drawing(&rows, &curves))?];
     Ok(finding)
 }
@@ -195,18 +201,6 @@ fn on_curve(rows: &[Row], friction: f64, height: f64, saturation: f64) -> Check 
     let quantity = "apparent mass over that of the curve";
     let check = Check::relative(quantity, &setting, 1.0, found, ALLOWED);
     check.by("one M_sat for all heights").with_error(error)
-}
-
-fn table(rows: &[Row]) -> Result<Table> {
-    let table = Columns::of(rows)
-        .number("friction", "1", "mu", |row| row.column.friction)
-        .number("height", "D", "nominal", |row| row.column.height)
-        .number("seed", "", "number", |row| row.column.seed as f64)
-        .number("filling", "m", "M", |row| row.load.filling)
-        .number("apparent", "m", "M_app", |row| row.load.apparent)
-        .number("stress_ratio", "1", "K", |row| row.load.stress_ratio())
-        .table()?;
-    Ok(table)
 }
 
 fn drawing(rows: &[Row], curves: &[(f64, f64)]) -> ChartFigure {

@@ -136,14 +136,12 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
             }
         }
     }
-    finding.data = Some(
-        Columns::of(&rows)
-            .word("setting", "experiment", |row| row.0.clone())
-            .word("quantity", "what", |row| row.1.to_owned())
-            .number("expected", "", "closed form", |row| row.2)
-            .number("found", "", "engine", |row| row.3)
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .word("setting", "experiment", |row| row.0.clone())
+        .word("quantity", "what", |row| row.1.to_owned())
+        .number("expected", "", "closed form", |row| row.2)
+        .number("found", "", "engine", |row| row.3)
+        .data()?;
     let errors = error_chart(&PER_CONTACT, &[("", &finding.convergences[..6])]);
     finding.figures = vec![PROSE.chart("normal-impact-errors", &[], errors)?];
     Ok(finding)

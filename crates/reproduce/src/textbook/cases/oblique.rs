@@ -231,7 +231,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
             data = data.number(&name, "", "", |row| row.by[method][place]);
         }
     }
-    finding.data = Some(data.table()?);
+    finding.data = data.data()?;
     Ok(finding)
 }
 

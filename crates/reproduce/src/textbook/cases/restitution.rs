@@ -150,14 +150,12 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         }
     }
     finding.figures = vec![PROSE.chart("restitution", &[], drawing(&rows))?];
-    finding.data = Some(
-        Columns::of(&rows)
-            .word("law", "normal law", |row| row.law.to_owned())
-            .number("damping", "m/t or t", "eta, or A", |row| row.damping)
-            .number("expected", "", "restitution", |row| row.expected)
-            .number("found", "", "restitution", |row| row.found)
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .word("law", "normal law", |row| row.law.to_owned())
+        .number("damping", "m/t or t", "eta, or A", |row| row.damping)
+        .number("expected", "", "restitution", |row| row.expected)
+        .number("found", "", "restitution", |row| row.found)
+        .data()?;
     Ok(finding)
 }
 

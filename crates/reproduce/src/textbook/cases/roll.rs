@@ -56,13 +56,11 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         }
     }
     let thinned: Vec<Instant> = usual.iter().copied().step_by(usual.len() / 24).collect();
-    finding.data = Some(
-        Columns::of(&thinned)
-            .number("time", "t", "since the throw", |row| row.time)
-            .number("velocity", "d/t", "of the centre", |row| row.velocity)
-            .number("rolling", "d/t", "r omega", |row| row.rolling)
-            .table()?,
-    );
+    finding.data = Columns::of(&thinned)
+        .number("time", "t", "since the throw", |row| row.time)
+        .number("velocity", "d/t", "of the centre", |row| row.velocity)
+        .number("rolling", "d/t", "r omega", |row| row.rolling)
+        .data()?;
     finding.figures = vec![PROSE.chart("slip-to-roll", &[], drawing(&thinned))?];
     Ok(finding)
 }

@@ -73,12 +73,10 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         let check = Check::relative(quantity, name, expected, slowed, 5e-3);
         finding.checks.push(check.by("5/7 mu_r"));
     }
-    finding.data = Some(
-        Columns::of(&rows)
-            .number("slope", "1", "tan(theta)", |row| row.0)
-            .number("acceleration", "1", "a/g", |row| row.1)
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .number("slope", "1", "tan(theta)", |row| row.0)
+        .number("acceleration", "1", "a/g", |row| row.1)
+        .data()?;
     finding.figures = vec![PROSE.chart("rolling-resistance", &[], drawing(&rows))?];
     Ok(finding)
 }

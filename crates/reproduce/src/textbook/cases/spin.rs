@@ -175,16 +175,14 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         finding.convergences.extend(errors);
     }
     finding.figures = vec![PROSE.chart("spin", &[], drawing(&experiments, &rows))?];
-    finding.data = Some(
-        Columns::of(&rows)
-            .word("meets", "partner", |row| row.meets.to_owned())
-            .number("spin_before", "", "r omega/v", |row| row.spin)
-            .number("velocity", "", "v_t'/v", |row| row.found[0])
-            .number("velocity_expected", "", "v_t'/v", |row| row.expected[0])
-            .number("spin", "", "r omega'/v", |row| row.found[1])
-            .number("spin_expected", "", "r omega'/v", |row| row.expected[1])
-            .table()?,
-    );
+    finding.data = Columns::of(&rows)
+        .word("meets", "partner", |row| row.meets.to_owned())
+        .number("spin_before", "", "r omega/v", |row| row.spin)
+        .number("velocity", "", "v_t'/v", |row| row.found[0])
+        .number("velocity_expected", "", "v_t'/v", |row| row.expected[0])
+        .number("spin", "", "r omega'/v", |row| row.found[1])
+        .number("spin_expected", "", "r omega'/v", |row| row.expected[1])
+        .data()?;
     Ok(finding)
 }
 

@@ -118,7 +118,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
             .number(&expected, "", equation, |row| row.expected[place])
             .number(&found, "", "engine", |row| row.found[place]);
     }
-    finding.data = Some(data.table()?);
+    finding.data = data.data()?;
     Ok(finding)
 }
 
