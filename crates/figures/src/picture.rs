@@ -323,9 +323,12 @@ mod tests {
     fn a_label_of_many_lines_ends_above_the_edge_of_the_page() {
         let label = "axial velocity along the tube, (*m*/*k*)^{1/2}*d* and more and more of it";
         let colours = ColourScale::new(label, -0.2, 0.2);
+        let (length, label) = (0.25, "5 *d*".to_owned());
+        let scale_bar = ScaleBar { length, label };
         let drawing = PictureFigure {
             pixels: &vec![255; 900 * 60],
             columns: 300,
+            scale_bar: Some(&scale_bar),
             colours: &[&colours],
             ..PictureFigure::default()
         };
