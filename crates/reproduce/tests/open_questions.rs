@@ -545,7 +545,7 @@ fn a_throat_that_closes_becomes_a_displacement_pump() {
     assert!((end - 7.5e-3).abs() < 2e-4, "{end}");
     assert_says(
         &finding.summary,
-        "At 1.00 a back pressure of 0.008, not 0.001, takes",
+        "At 1.00, 0.008 instead of 0.001 lowers *J*/*J*_{max} by",
     );
     assert_says(&finding.summary, "Cohesion changes");
     assert_says(&finding.summary, "at 2 of 2 places");

@@ -93,7 +93,7 @@ pub enum RunError {
         help: String,
     },
     /// There is no run to go on with.
-    #[error("{} holds no state of a run: {reason}", folder.display())]
+    #[error("{} holds no run that can be continued: {reason}", folder.display())]
     NothingToResume {
         /// The folder.
         folder: PathBuf,

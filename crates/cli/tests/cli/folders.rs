@@ -205,7 +205,7 @@ fn what_cannot_be_resumed() {
     place.refuses(
         "run --resume absent",
         &[
-            "absent holds no state of a run",
+            "absent holds no run that can be continued",
             "config.toml",
             "peristalsis runs DIR",
         ],

@@ -88,7 +88,7 @@ fn a_diverging_run_names_step_and_grain_and_saves_its_state() {
     place
         .call("run --resume results")
         .expect_code(2)
-        .says(&["holds no state of a run", "diverged at step "]);
+        .says(&["holds no run that can be continued", "diverged at step "]);
     assert!(place.inventory() == before);
 }
 

@@ -160,7 +160,7 @@ fn what_cannot_be_drawn_is_refused_and_nothing_is_left() {
     let place = place();
     let before = place.inventory();
     let refused = "
-render nowhere | nowhere holds no state of a run
+render nowhere | nowhere holds no run
 render results --width 3 | take 16 to 16384
 render results --width 0 --film | take 16 to 16384
 render results --width 99999 | take 16 to 16384

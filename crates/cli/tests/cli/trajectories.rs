@@ -123,7 +123,7 @@ fn frames_from_the_state_of_a_finished_run() {
         &["holds another run", "--out"],
     );
     assert!(!again.message().contains("--resume"), "{}", again.message());
-    place.refuses("trajectory nowhere", &["nowhere holds no state of a run"]);
+    place.refuses("trajectory nowhere", &["nowhere holds no run"]);
 }
 
 #[test]

@@ -411,10 +411,12 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
 fn seeds_and_runs_tell_the_mass_flow() {
     let place = Place::new();
     let silo = "run --preset silo run.duration=100 --seeds 1..2 --out";
-    let flows = ["mass flow", "kg/h", "mean of 2 seeds"];
+    let flows = ["discharge in kg/h", "mean of 2 seeds"];
     place.does(&format!("{silo} silo")).shows(&flows);
+    place.does("runs silo").shows(&["kg/h discharged"]);
     let json = place.does("runs silo --json").json();
     assert_eq!(json[0]["mass_flow_unit"], "kg/h");
+    assert_eq!(json[0]["mass_flow_is"], "discharge");
     // "the tube holds ... kg" as a number.
     let summary = read_json(&place.path("silo/seed-1/summary.json"));
     let kilograms = summary["si"]["hold_up_kg"].as_f64().unwrap();
