@@ -114,28 +114,16 @@ impl<'a> AtRate<'a> for Loop<'a> {
 }
 
 impl Loop<'_> {
-    /// The widths at which the starts are compared, each with its probability among all of them.
-    fn compared(&self) -> Vec<(&Outcomes, f64)> {
-        let compared = self.outcomes.iter().filter(|one| one.is_compared());
-        let compared: Vec<&Outcomes> = compared.collect();
-        let number = compared.len() as f64;
-        let among = |one: &Outcomes| (one.probability() * number).min(1.0);
-        compared.into_iter().map(|one| (one, among(one))).collect()
-    }
-
     /// The width at which the starts part most clearly.
     fn clearest(&self) -> Option<&Outcomes> {
-        let compared = self.compared().into_iter().map(|(one, _)| one);
+        let compared = self.outcomes.iter().filter(|one| one.is_compared());
         compared.min_by(|one, other| one.probability().total_cmp(&other.probability()))
     }
 
     /// Probability of [`Self::clearest`] among all widths that are compared.
     fn probability(&self) -> Option<f64> {
-        let compared = self
-            .compared()
-            .into_iter()
-            .map(|(_, probability)| probability);
-        compared.min_by(f64::total_cmp)
+        let number = self.outcomes.iter().filter(|one| one.is_compared()).count();
+        Some((self.clearest()?.probability() * number as f64).min(1.0))
     }
 
     /// Whether both flows exist at some width; not asked where the flow from rest does not jump, and not told where no width
@@ -144,8 +132,8 @@ impl Loop<'_> {
         let is_bistable = self.probability()? < ONE_FLOW_BY_CHANCE;
         let beyond = |one: &Outcomes| one.width - self.critical.value;
         let is_next = |one: &Outcomes| (0.0..=NEXT_TO_THE_FALL).contains(&beyond(one));
-        let compared = self.compared();
-        let is_told = is_bistable || compared.iter().any(|(one, _)| is_next(one));
+        let mut compared = self.outcomes.iter().filter(|one| one.is_compared());
+        let is_told = is_bistable || compared.any(is_next);
         (self.jumps && is_told).then_some(is_bistable)
     }
 
@@ -161,11 +149,12 @@ impl Loop<'_> {
         beyond.find(|one| one.breaks_up()).map(|one| one.width)
     }
 
-    /// The widths beyond w_c at which both flows exist, ascending.
+    /// The least and the largest width at which the starts part, where both flows exist.
     fn both(&self) -> Option<(f64, f64)> {
-        let both = self.compared().into_iter();
-        let both = both.filter(|(_, probability)| *probability < ONE_FLOW_BY_CHANCE);
-        let widths: Vec<f64> = both.map(|(one, _)| one.width).collect();
+        let exist = self.is_bistable() == Some(true);
+        let parted = |one: &&Outcomes| one.is_compared() && one.probability() < ONE_FLOW_BY_CHANCE;
+        let parted = self.outcomes.iter().filter(|one| exist && parted(one));
+        let widths: Vec<f64> = parted.map(|one| one.width).collect();
         Some((*widths.first()?, *widths.last()?))
     }
 
