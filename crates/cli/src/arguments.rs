@@ -310,8 +310,7 @@ pub(crate) struct ReproduceArguments {
     /// Folder for report and runs; an older report in it is replaced.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     pub(crate) out: PathBuf,
-    /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from; the default is validation/results in
-    /// this folder or one above.
+    /// Tables of finished runs (.csv, .parquet), or their folders, to begin from. Default: validation/results here or above.
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub(crate) import: Vec<PathBuf>,
     #[command(flatten)]

@@ -204,20 +204,6 @@ impl Drive {
         }
     }
 
-    /// Sets the amplitude of the drive that is led by a parameter; others stay.
-    fn set_amplitude(&mut self, parameter: ScheduledParameter, value: f64) {
-        match (parameter, &mut self.control) {
-            (ScheduledParameter::Width, Control::Strain { width }) => *width = value,
-            (
-                ScheduledParameter::ForceAmplitude,
-                Control::Stress {
-                    force_amplitude, ..
-                },
-            ) => *force_amplitude = value,
-            _ => {}
-        }
-    }
-
     /// The schedule of a parameter, if it has one.
     pub fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {
         let mut schedules = self.schedules.iter();
@@ -416,39 +402,6 @@ impl Configuration {
     /// Speed of the wave c \[d t^-1\].
     pub fn wave_speed(&self) -> f64 {
         self.drive.strain_rate * self.tube.wavelength
-    }
-
-    /// This run under a constant drive as hard on the grains as its schedules ever become: the least width, the largest
-    /// force amplitude and the fastest wave. Without schedules it is the run itself.
-    pub fn at_its_hardest(&self) -> Self {
-        let mut hardest = self.clone();
-        let periods = self.run.periods.unwrap_or(0.0);
-        for schedule in std::mem::take(&mut hardest.drive.schedules) {
-            let (least, most) = schedule.range(periods);
-            match schedule.parameter {
-                ScheduledParameter::StrainRate => hardest.drive.strain_rate = most,
-                ScheduledParameter::Width => hardest.drive.set_amplitude(schedule.parameter, least),
-                ScheduledParameter::ForceAmplitude => {
-                    hardest.drive.set_amplitude(schedule.parameter, most);
-                }
-            }
-        }
-        hardest
-    }
-
-    /// This run with each amplitude that has a schedule as it is at t = 0, whatever value it has besides: the same run,
-    /// which two configurations share that differ in such a value alone.
-    pub fn at_its_start(&self) -> Self {
-        let mut start = self.clone();
-        for schedule in &mut start.drive.schedules {
-            schedule.before = schedule.value(0.0);
-        }
-        for schedule in start.drive.schedules.clone() {
-            start
-                .drive
-                .set_amplitude(schedule.parameter, schedule.before);
-        }
-        start
     }
 
     /// +1 for a wave towards +z, -1 towards -z: the source's strain-controlled wave runs towards -z.

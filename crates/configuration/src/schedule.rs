@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::configuration::{Configuration, Control, Drive};
+
 /// A parameter of the drive that may follow a schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -137,6 +139,57 @@ impl Schedule {
                     _ => from,
                 }
             }
+        }
+    }
+}
+
+impl Configuration {
+    /// This run under a constant drive as hard on the grains as its schedules ever become: the least width, the largest
+    /// force amplitude and the fastest wave. Without schedules it is the run itself.
+    pub fn at_its_hardest(&self) -> Self {
+        let mut hardest = self.clone();
+        let periods = self.run.periods.unwrap_or(0.0);
+        for schedule in std::mem::take(&mut hardest.drive.schedules) {
+            let (least, most) = schedule.range(periods);
+            match schedule.parameter {
+                ScheduledParameter::StrainRate => hardest.drive.strain_rate = most,
+                ScheduledParameter::Width => hardest.drive.set_amplitude(schedule.parameter, least),
+                ScheduledParameter::ForceAmplitude => {
+                    hardest.drive.set_amplitude(schedule.parameter, most);
+                }
+            }
+        }
+        hardest
+    }
+
+    /// This run with each amplitude that has a schedule as it is at t = 0, whatever value it has besides: the same run,
+    /// which two configurations share that differ in such a value alone.
+    pub fn at_its_start(&self) -> Self {
+        let mut start = self.clone();
+        for schedule in &mut start.drive.schedules {
+            schedule.before = schedule.value(0.0);
+        }
+        for schedule in start.drive.schedules.clone() {
+            start
+                .drive
+                .set_amplitude(schedule.parameter, schedule.before);
+        }
+        start
+    }
+}
+
+impl Drive {
+    /// Sets the amplitude of the drive that is led by a parameter; others stay.
+    fn set_amplitude(&mut self, parameter: ScheduledParameter, value: f64) {
+        match (parameter, &mut self.control) {
+            (ScheduledParameter::Width, Control::Strain { width }) => *width = value,
+            (
+                ScheduledParameter::ForceAmplitude,
+                Control::Stress {
+                    force_amplitude, ..
+                },
+            ) => *force_amplitude = value,
+            _ => {}
         }
     }
 }
