@@ -149,35 +149,23 @@ impl Contract<'_> {
     }
 
     fn array(&mut self, item: &Item, items: &[Item], schema: &Value, path: &str) {
-        if (items.len() as u64) < schema["minItems"].as_u64().unwrap_or(0) {
-            self.wrong_length(item, "short", schema, path);
-        } else if schema["maxItems"]
-            .as_u64()
-            .is_some_and(|most| items.len() as u64 > most)
-        {
-            self.wrong_length(item, "long", schema, path);
+        let (number, bound) = (items.len() as u64, |name: &str| schema[name].as_u64());
+        let wrong = match (bound("minItems"), bound("maxItems")) {
+            (Some(least), _) if number < least => Some(("short", "at least", least)),
+            (_, Some(most)) if number > most => Some(("long", "at most", most)),
+            _ => None,
+        };
+        if let Some((length, relation, bound)) = wrong {
+            let message =
+                format!("the list {path} is too {length}: it has {relation} {bound} values");
+            let (kind, place) = (ProblemKind::OutOfRange, (&item.origin, "this list"));
+            self.refuse(kind, path, place, message, allowed(schema));
         }
         if let Some(inner) = schema.get("items") {
             for (index, element) in items.iter().enumerate() {
                 self.item(element, inner, &format!("{path}[{index}]"));
             }
         }
-    }
-
-    fn wrong_length(&mut self, item: &Item, length: &str, schema: &Value, path: &str) {
-        let place = (&item.origin, "this list");
-        let bound = if length == "short" {
-            "minItems"
-        } else {
-            "maxItems"
-        };
-        let (relation, bound) = match (length, schema[bound].as_u64().unwrap_or(0)) {
-            ("short", least) => ("at least", least),
-            (_, most) => ("at most", most),
-        };
-        let message = format!("the list {path} is too {length}: it has {relation} {bound} values");
-        let kind = ProblemKind::OutOfRange;
-        self.refuse(kind, path, place, message, allowed(schema));
     }
 
     fn name(&mut self, item: &Item, text: &str, schema: &Value, path: &str) {

@@ -177,3 +177,52 @@ fn a_report_names_its_source_and_how_to_make_it_again() {
         assert!(page.contains(part), "{part}");
     }
 }
+
+/// A student: an axis over presets was taken and did nothing, so did one over a width that a schedule leads, and single keys
+/// of a schedule could not be varied.
+#[test]
+fn axes_change_what_they_name() {
+    let place = Place::new();
+    let schedule = "drive.schedule = { form = \"ramp\", parameter = \"width\", from = 2.9, to = 2.4, end = 1 }\n";
+    let study = |base: &str, key: &str, values: &str| {
+        format!(
+            "name = \"axes\"\npreset = \"frictionless\"\n[base]\ntube.waves = 2\nrun.periods = 2\n{base}\
+             [[axes]]\nkey = \"{key}\"\nvalues = {values}\n"
+        )
+    };
+    place.write("preset.toml", study("", "preset", "[\"frictional\"]"));
+    place.refuses(
+        "study plan preset.toml",
+        &["preset cannot be an axis", "preset.toml:7"],
+    );
+    place.write("led.toml", study(schedule, "drive.width", "[2.5, 2.6]"));
+    place.refuses(
+        "study plan led.toml",
+        &["are the same run", "drive.schedule leads"],
+    );
+    place.write(
+        "to.toml",
+        study(schedule, "drive.schedule.to", "[2.5, 2.6]"),
+    );
+    place.does("study plan to.toml").shows(&["2 points"]);
+}
+
+/// A student: imported rows were left out of an archive, and a lost run of a check, without a word.
+#[test]
+fn what_a_store_lacks_is_told() {
+    let place = finished();
+    place.does("study export kept --out tables");
+    place.does("study import rows tables/tested.csv --study study.toml");
+    place
+        .does("study pack rows rows.tar")
+        .says(&["left out", "4 finished runs"]);
+    let runs = std::fs::read_dir(place.path("kept/runs")).unwrap();
+    let lost = runs.map(|entry| entry.unwrap().path()).next().unwrap();
+    std::fs::remove_dir_all(lost).unwrap();
+    place
+        .call("study verify kept")
+        .expect_code(1)
+        .shows(&["3 finished runs", "its files are gone"]);
+    place.write("empty.tar", "");
+    place.refuses("study import kept empty.tar", &["it is empty"]);
+}
