@@ -54,7 +54,7 @@ export class SpaceTime {
   draw(chart: Chart, tube: Welcome, lightness: boolean, colours: Ink): void {
     const scale = stops(FIELDS.axial, lightness);
     const end = Math.max(this.looks.at(-1)?.clock ?? 0, 2);
-    chart.begin([0, end], [0.5, tube.waves + 0.5], [timeAxis(tube), "wave"], colours, {
+    chart.begin([0, end], [-0.5, tube.waves - 0.5], [timeAxis(tube), "wave"], colours, {
       legend: [
         { text: "against the wave", colour: css(colourAt(scale, 0.1)), mark: "area" },
         { text: "no flow", colour: css(colourAt(scale, 0.5)), mark: "area" },

@@ -218,6 +218,7 @@ mod tests {
     #[test]
     fn bad_series_are_refused() {
         let few = Error::TooFew {
+            what: "values",
             needed: 4,
             found: 0,
         };

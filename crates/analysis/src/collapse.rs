@@ -64,7 +64,7 @@ pub struct CollapseQuality {
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
 pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, Error> {
-    enough(curves.len(), 2)?;
+    enough("curves", curves.len(), 2)?;
     let total: usize = curves.iter().map(Vec::len).sum();
     let sorted = |curve: &Vec<CurvePoint>| {
         let mut points: Vec<CurvePoint> = curve

@@ -100,7 +100,7 @@ impl Collapse<'_> {
         &self,
         answer: impl Fn(&Collapse<'_>) -> Result<T, Error>,
     ) -> Result<Vec<T>, Error> {
-        enough(self.curves.len(), 3)?;
+        enough("curves", self.curves.len(), 3)?;
         let without = |left_out: usize| {
             let mut curves = self.curves.to_vec();
             curves.remove(left_out);
@@ -128,8 +128,8 @@ impl Collapse<'_> {
             (0.0..=1.0).contains(&needed),
             Error::Fraction { value: needed },
         )?;
-        enough(self.curves.len(), 2)?;
-        enough(starts, 1)
+        enough("curves", self.curves.len(), 2)?;
+        enough("starts", starts, 1)
     }
 }
 

@@ -84,13 +84,13 @@ pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
 /// # Errors
 /// [`Error::TooFew`] below 3 replicates or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplicate`].
 pub fn ensemble_moments<S: AsRef<[f64]>>(replicates: &[S]) -> Result<Vec<Moments>, Error> {
-    enough(replicates.len(), LEAST_REPLICATES)?;
+    enough("replicates", replicates.len(), LEAST_REPLICATES)?;
     let times = replicates[0].as_ref().len();
     for (replicate, series) in replicates.iter().map(AsRef::as_ref).enumerate() {
         same_length(times, series.len())?;
         check_replicate(replicate, series)?;
     }
-    enough(times, 1)?;
+    enough("times", times, 1)?;
     let at = |time: usize| {
         let column = replicates.iter().map(|series| series.as_ref()[time]);
         moments(&column.collect::<Vec<f64>>())
@@ -165,11 +165,12 @@ mod tests {
     fn bad_ensembles_are_refused() {
         let none: [Vec<f64>; 0] = [];
         let few = Error::TooFew {
+            what: "replicates",
             needed: 3,
             found: 0,
         };
         assert_eq!(ensemble_moments(&none), Err(few));
-        assert_eq!(moments(&[]), Err(few));
+        assert_refused!(moments(&[]) => TooFew { what: "values", needed: 3, found: 0 });
         assert_refused!(ensemble_moments(&[[0.0; 0]; 3]) => TooFew { needed: 1, .. });
         let uneven = ensemble_moments(&[vec![0.0; 3], vec![0.0; 2], vec![0.0; 3]]);
         assert_refused!(uneven => LengthMismatch { expected: 3, found: 2 });

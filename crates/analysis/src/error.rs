@@ -5,9 +5,11 @@ use crate::uncertain::Uncertain;
 /// Error of an estimator: its input cannot be judged.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
-    /// Fewer values than the estimator needs.
-    #[error("{found} values are too few: at least {needed} are needed")]
+    /// Fewer data than the estimator needs.
+    #[error("{found} {what} are too few: at least {needed} are needed")]
     TooFew {
+        /// Of what, in the plural.
+        what: &'static str,
         /// Values needed.
         needed: usize,
         /// Values given.
@@ -135,7 +137,7 @@ pub enum Error {
     },
     /// Curves that share too little of the abscissa to be compared.
     #[error(
-        "a fraction of {found} of the points overlaps with another curve: at least {needed} is needed"
+        "at most {:.0} % of the points lie on another curve's extent: {:.0} % must; begin nearer to the collapse", 100.0 * found, 100.0 * needed
     )]
     NoOverlap {
         /// Least fraction accepted.
@@ -183,16 +185,23 @@ pub(crate) fn ensure(holds: bool, otherwise: Error) -> Result<(), Error> {
 
 /// The series, unless it is shorter than `needed` or has a value that is not finite.
 pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
-    enough(series.len(), needed)?;
+    enough("values", series.len(), needed)?;
     match first(series, |value| !value.is_finite()) {
         Some((index, value)) => Err(Error::NonFinite { index, value }),
         None => Ok(series),
     }
 }
 
-/// Refuses fewer values than `needed`.
-pub(crate) fn enough(found: usize, needed: usize) -> Result<(), Error> {
-    ensure(found >= needed, Error::TooFew { needed, found })
+/// Refuses fewer of `what` than `needed`.
+pub(crate) fn enough(what: &'static str, found: usize, needed: usize) -> Result<(), Error> {
+    ensure(
+        found >= needed,
+        Error::TooFew {
+            what,
+            needed,
+            found,
+        },
+    )
 }
 
 /// The first value with a property, and its place.

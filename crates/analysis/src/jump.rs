@@ -62,7 +62,7 @@ pub fn jump_height(
 /// Value of a branch at a width, and its slope.
 fn branch([width, ratio, error]: [&[f64]; 3], at: f64) -> Result<(Uncertain, f64), Error> {
     check_points(width, ratio, error)?;
-    enough(width.len(), 1)?;
+    enough("widths", width.len(), 1)?;
     if distinct(width).len() > 1 {
         let line = fit_line(width, ratio, error)?;
         return Ok((line.at(at), line.slope.value));

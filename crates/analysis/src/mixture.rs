@@ -83,7 +83,7 @@ impl TwoPeaks {
 pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<Histogram, Error> {
     checked(values, 0)?;
     checked(&[lower, upper], 2)?;
-    enough(bins, 1)?;
+    enough("bins", bins, 1)?;
     let range = upper - lower;
     let (index, value) = (1, range);
     ensure(

@@ -77,7 +77,7 @@ pub fn second_moment<S: AsRef<[f64]>>(
     let moments = moments_of(&runs);
     if moments.is_empty() {
         let with_sample = runs.iter().filter(|run| !run.series.is_empty()).count();
-        enough(with_sample, LEAST_RUNS)?;
+        enough("runs with a sample", with_sample, LEAST_RUNS)?;
     }
     Ok(moments)
 }
@@ -121,7 +121,7 @@ struct Run<'a> {
 }
 
 fn checked_runs<S: AsRef<[f64]>>(runs: &[S], after_end: AfterEnd) -> Result<Vec<Run<'_>>, Error> {
-    enough(runs.len(), LEAST_RUNS)?;
+    enough("runs", runs.len(), LEAST_RUNS)?;
     runs.iter()
         .map(AsRef::as_ref)
         .enumerate()

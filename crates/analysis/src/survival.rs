@@ -122,7 +122,7 @@ impl Survival {
     /// [`Error::TooFew`] without runs, [`Error::NonFinite`], [`Error::Negative`].
     pub fn new(transitions: &[Transition]) -> Result<Self, Error> {
         let times = times(transitions)?;
-        enough(times.len(), 1)?;
+        enough("runs", times.len(), 1)?;
         let watched = times.iter().map(|time| time.0).fold(0.0, f64::max);
         let observed = times.iter().filter(|time| time.1).count();
         let mut survival = 1.0;

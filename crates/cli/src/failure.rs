@@ -287,13 +287,15 @@ fn of_run(error: &RunError) -> Advice {
         RunError::NoMemory { .. } => wrong(
             "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)",
         ),
-        RunError::NothingToResume { folder, .. } if folder.join(files::CONFIGURATION).is_file() => {
+        RunError::NoRun { folder, .. } | RunError::NothingToResume { folder, .. }
+            if folder.join(files::CONFIGURATION).is_file() =>
+        {
             wrong(format!(
                 "begin it anew in another folder: peristalsis run {} --out DIR",
                 quoted(&folder.join(files::CONFIGURATION))
             ))
         }
-        RunError::NothingToResume { .. } => wrong(
+        RunError::NoRun { .. } | RunError::NothingToResume { .. } => wrong(
             "name the folder of a run, or its state.checkpoint; `peristalsis runs DIR` lists those below a folder",
         ),
         RunError::Folder { .. }

@@ -132,7 +132,9 @@ pub(crate) fn of_run(error: RunError) -> PyErr {
             SnapshotError::new_err(text)
         }
         RunError::State { .. } => SnapshotError::new_err(text),
-        RunError::NothingToResume { .. } => PyFileNotFoundError::new_err(text),
+        RunError::NoRun { .. } | RunError::NothingToResume { .. } => {
+            PyFileNotFoundError::new_err(text)
+        }
         RunError::Folder { .. } | RunError::AtWork { .. } => PyOSError::new_err(text),
         RunError::Trajectory { help, .. } => {
             PyValueError::new_err(format!("{text}\n  help: {help}"))

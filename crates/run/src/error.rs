@@ -92,12 +92,20 @@ pub enum RunError {
         /// What to ask for instead.
         help: String,
     },
-    /// There is no run to go on with.
+    /// A folder lacks a part of a run.
+    #[error("{} holds no run: {reason}", folder.display())]
+    NoRun {
+        /// The folder.
+        folder: PathBuf,
+        /// The missing part.
+        reason: String,
+    },
+    /// A run cannot go on.
     #[error("{} holds no run that can be continued: {reason}", folder.display())]
     NothingToResume {
         /// The folder.
         folder: PathBuf,
-        /// The missing part.
+        /// Why not.
         reason: String,
     },
     /// A run has gone further than it is asked to go.

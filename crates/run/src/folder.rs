@@ -126,7 +126,7 @@ impl RunFolder {
     /// Opens the folder of a run, finished or not, with its state.
     ///
     /// # Errors
-    /// [`RunError::NothingToResume`] where configuration or state is missing; [`RunError::State`] where the state is damaged,
+    /// [`RunError::NoRun`] where configuration or state is missing; [`RunError::State`] where the state is damaged,
     /// another run's or another version's; errors of the configuration.
     pub fn open(path: &Path) -> Result<(Self, Run), RunError> {
         let folder = Self::named(path);
@@ -177,7 +177,7 @@ impl RunFolder {
     /// The configuration in the folder.
     ///
     /// # Errors
-    /// [`RunError::NothingToResume`] where it is missing; errors of the configuration.
+    /// [`RunError::NoRun`] where it is missing; errors of the configuration.
     pub fn configuration(&self) -> Result<Configuration, RunError> {
         let name = self.file(CONFIGURATION);
         let text =
@@ -239,7 +239,7 @@ impl RunFolder {
     }
 
     fn missing(&self, name: &str, error: &std::io::Error) -> RunError {
-        RunError::NothingToResume {
+        RunError::NoRun {
             folder: self.path.clone(),
             reason: format!("{name}: {error}"),
         }

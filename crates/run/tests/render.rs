@@ -325,7 +325,8 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
         }
         frames
     };
-    let read = all(&mut FrameSource::of_file(&path, None, Window::default()).unwrap());
+    let read =
+        all(&mut FrameSource::of_file(&path, &configuration(), None, Window::default()).unwrap());
     let mut computed = FrameSource::of_run(Run::new(configuration()).unwrap(), plan(), false);
     assert_eq!(computed.frames(), 13);
     let computed = all(&mut computed);
@@ -353,7 +354,11 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
         from: Some(Span::Periods(1.0)),
         to: Some(Span::Periods(2.0)),
     };
-    let some = all(&mut FrameSource::of_file(&path, Some(Span::Periods(0.5)), window).unwrap());
+    let some =
+        all(
+            &mut FrameSource::of_file(&path, &configuration(), Some(Span::Periods(0.5)), window)
+                .unwrap(),
+        );
     let periods: Vec<f64> = some
         .iter()
         .map(|frame| frame.value("period").unwrap())
@@ -365,13 +370,14 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
             .collect::<Vec<_>>(),
         [4.0, 6.0, 8.0]
     );
-    let [first, nearest] = FrameSource::nearest(&path, Some(Span::Periods(1.3))).unwrap();
+    let [first, nearest] =
+        FrameSource::nearest(&path, &configuration(), Some(Span::Periods(1.3))).unwrap();
     assert_eq!((first.step, nearest.step), (read[0].step, read[5].step));
     let beyond = Window {
         from: Some(Span::Periods(7.0)),
         to: None,
     };
-    let refused = FrameSource::of_file(&path, None, beyond)
+    let refused = FrameSource::of_file(&path, &configuration(), None, beyond)
         .unwrap_err()
         .to_string();
     assert!(

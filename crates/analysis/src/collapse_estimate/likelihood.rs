@@ -71,7 +71,7 @@ impl<'a> Likelihood<'a> {
             intervals: INTERVALS,
             corrections,
         };
-        enough(new.points(), new.free() + steps.len() + 4)?;
+        enough("points", new.points(), new.free() + steps.len() + 4)?;
         Ok(new)
     }
 

@@ -430,7 +430,7 @@ fn errors_are_stretched_and_what_cannot_be_estimated_is_refused() {
         "{:?}",
         two.doubts
     );
-    assert_refused!(estimate(&curves[..1]) => TooFew { needed: 2, found: 1 });
+    assert_refused!(estimate(&curves[..1]) => TooFew { what: "curves", needed: 2, found: 1 });
     let mut negative = curves.clone();
     negative[0].parameter = -1.0;
     assert_refused!(kind.estimate(&negative, Some(1.0), 1) => NotPositive { index: 0, .. });

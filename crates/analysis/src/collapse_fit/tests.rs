@@ -31,7 +31,7 @@ fn what_no_search_can_begin_with_is_refused() {
         curves: &curves[..1],
         ..collapse
     };
-    assert_refused!(one.check(&[0.0], &[1.0], 1) => TooFew { needed: 2, found: 1 });
+    assert_refused!(one.check(&[0.0], &[1.0], 1) => TooFew { what: "curves", needed: 2, found: 1 });
     assert_refused!(one.without_each(|_| Ok(())) => TooFew { needed: 3, .. });
     assert!(collapse.check(&[0.0], &[0.0], 1).is_err());
     assert!(collapse.check(&[0.0], &[1.0], 0).is_err());

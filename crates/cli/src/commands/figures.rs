@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use peristalsis_run::{RunError, RunFolder, Status, Summary};
+use peristalsis_run::{RunFolder, Status, Summary};
 
 use crate::arguments::FiguresArguments;
 use crate::commands::print;
@@ -10,13 +10,7 @@ use crate::failure::Failure;
 
 pub(crate) fn figures(arguments: &FiguresArguments) -> Result<ExitCode, Failure> {
     for path in &arguments.folders {
-        let (folder, run) = RunFolder::open(path).map_err(|error| match error {
-            RunError::NothingToResume { folder, reason } => Failure::usage(
-                format!("{} holds no run to draw: {reason}", folder.display()),
-                "name the folder of a run; `peristalsis runs DIR` lists those below a folder",
-            ),
-            error => error.into(),
-        })?;
+        let (folder, run) = RunFolder::open(path)?;
         let status = match run.is_complete() {
             true => Status::Complete,
             false => Status::Interrupted,

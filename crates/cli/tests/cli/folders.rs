@@ -204,11 +204,7 @@ fn what_cannot_be_resumed() {
     let place = Place::new();
     place.refuses(
         "run --resume absent",
-        &[
-            "absent holds no run that can be continued",
-            "config.toml",
-            "peristalsis runs DIR",
-        ],
+        &["absent holds no run", "config.toml", "peristalsis runs DIR"],
     );
     place.does("run SMALL --out whole");
     let before = place.inventory();

@@ -353,8 +353,8 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
     let step = first.time.max(last.time - before_last.time);
     let x = [(first.time - step).max(0.0), last.time];
     let [start, end] = x.map(|time| time * run.configuration().drive.strain_rate);
-    // The cell of a wave lies about its number, from 1 as in the viewer.
-    let field = Field::new(&values, waves, (start, end), (0.5, waves as f64 + 0.5));
+    // The cell of a wave lies about its number, from 0 as in the table of waves.
+    let field = Field::new(&values, waves, (start, end), (-0.5, waves as f64 - 0.5));
     let panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::Wave))
         .y_scale(Scale::Counting)
         .with(field);

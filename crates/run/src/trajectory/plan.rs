@@ -58,12 +58,12 @@ impl fmt::Display for Span {
 }
 
 impl Span {
-    /// The same in steps of a run.
-    fn steps(self, configuration: &Configuration) -> Result<f64, RunError> {
+    /// The same in units of time of a run \[t\].
+    pub(super) fn time(self, configuration: &Configuration) -> Result<f64, RunError> {
         match self {
-            Self::Time(time) => Ok(time / configuration.run.time_step),
+            Self::Time(time) => Ok(time),
             Self::Periods(periods) => match configuration.drive.period() {
-                Some(period) => Ok(periods * period / configuration.run.time_step),
+                Some(period) => Ok(periods * period),
                 None if periods == 0.0 => Ok(0.0),
                 None => {
                     let reason = format!("the wave stands still, and {self} last for ever");
@@ -72,6 +72,11 @@ impl Span {
                 }
             },
         }
+    }
+
+    /// The same in steps of a run.
+    fn steps(self, configuration: &Configuration) -> Result<f64, RunError> {
+        Ok(self.time(configuration)? / configuration.run.time_step)
     }
 }
 

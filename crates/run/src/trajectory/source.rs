@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use peristalsis_configuration::Configuration;
 use peristalsis_formats::trajectory::gsd::GsdReader;
 use peristalsis_formats::{Frame, TrajectoryFormat};
 
@@ -10,7 +11,7 @@ use super::plan::{Span, TrajectoryPlan, WINDOW_HELP, Window};
 use crate::error::RunError;
 use crate::run::Run;
 
-/// Part of an interval by which a frame may come too early: times are rounded.
+/// Part of a period by which a frame may come too early: times are rounded.
 const TOLERANCE: f64 = 1e-6;
 
 /// Frames of a run, one after the other.
@@ -34,46 +35,49 @@ enum From {
 }
 
 impl FrameSource {
-    /// The frames of a GSD trajectory within a window, at least `every` apart.
+    /// The frames of a GSD trajectory of a run within a window, at least `every` apart.
     ///
     /// # Errors
-    /// [`RunError::Format`] where it cannot be read; [`RunError::Trajectory`] where the window holds none of its frames.
-    pub fn of_file(path: &Path, every: Option<Span>, window: Window) -> Result<Self, RunError> {
+    /// [`RunError::Format`] where it cannot be read; [`RunError::Trajectory`] where the window holds none of its frames, or
+    /// is in periods of a wave that stands still.
+    pub fn of_file(
+        path: &Path,
+        configuration: &Configuration,
+        every: Option<Span>,
+        window: Window,
+    ) -> Result<Self, RunError> {
+        let time = |span: Option<Span>| span.map(|span| span.time(configuration)).transpose();
+        let (interval, from, to) = (
+            time(every)?.unwrap_or(0.0),
+            time(window.from)?,
+            time(window.to)?,
+        );
+        let tolerance = TOLERANCE * configuration.drive.period().unwrap_or(1.0);
         let mut reader = GsdReader::open(path)?;
         let mut chosen = Vec::new();
         let mut due = f64::NEG_INFINITY;
-        let (mut first, mut last) = ([f64::NAN; 2], [f64::NAN; 2]);
+        let (mut first, mut last) = (f64::NAN, f64::NAN);
         for number in 0..reader.frames() {
             let time = reader.value(number, "time")?.unwrap_or(f64::NAN);
-            let period = reader.value(number, "period")?.unwrap_or(f64::NAN);
             if number == 0 {
-                first = [period, time];
+                first = time;
             }
-            last = [period, time];
-            // The place on the axis of a span, and the span's own length there.
-            let along = |span: Span| match span {
-                Span::Periods(periods) => (period, periods),
-                Span::Time(length) => (time, length),
-            };
-            let (place, interval) = every.map_or((0.0, 0.0), along);
-            let slack = TOLERANCE * interval.max(1.0);
-            let [from, to] = [window.from, window.to].map(|end| end.map(along));
-            if from.is_none_or(|(place, end)| place >= end - TOLERANCE)
-                && to.is_none_or(|(place, end)| place <= end + TOLERANCE)
-                && place >= due - slack
+            last = time;
+            if from.is_none_or(|from| time >= from - tolerance)
+                && to.is_none_or(|to| time <= to + tolerance)
+                && time >= due - tolerance
             {
                 chosen.push(number);
                 // On the grid of intervals, so that uneven frames do not drift.
-                let grid = if due.is_finite() { due } else { place };
-                due = grid.max(place - interval) + interval;
+                let grid = if due.is_finite() { due } else { time };
+                due = grid.max(time - interval) + interval;
             }
         }
         if chosen.is_empty() {
             let (frames, path, help) = (reader.frames(), path.display(), WINDOW_HELP);
-            let ([first_period, first_time], [last_period, last_time]) = (first, last);
             let reason = format!(
-                "the window holds none of the {frames} frames of {path}, which go from t/T = {first_period:.2} (t = \
-                 {first_time:.1}) to {last_period:.2} ({last_time:.1})"
+                "the window holds none of the {frames} frames of {path}, which are from {}",
+                extent(configuration, first, last)
             );
             return Err(RunError::Trajectory { reason, help });
         }
@@ -115,25 +119,27 @@ impl FrameSource {
         }
     }
 
-    /// The frame of a GSD trajectory nearest to an instant, or the last where none is asked for; and the first.
+    /// The frame of a GSD trajectory of a run nearest to an instant, or the last where none is asked for; and the first.
     ///
     /// # Errors
-    /// [`RunError::Format`] where it cannot be read.
-    pub fn nearest(path: &Path, at: Option<Span>) -> Result<[Frame; 2], RunError> {
+    /// [`RunError::Format`] where it cannot be read; [`RunError::Trajectory`] where none of its frames is near the instant,
+    /// or it is in periods of a wave that stands still.
+    pub fn nearest(
+        path: &Path,
+        configuration: &Configuration,
+        at: Option<Span>,
+    ) -> Result<[Frame; 2], RunError> {
         let mut reader = GsdReader::open(path)?;
         let mut found = (reader.frames() - 1, f64::INFINITY);
-        if let Some(at) = at {
-            let (name, at) = match at {
-                Span::Periods(periods) => ("period", periods),
-                Span::Time(time) => ("time", time),
-            };
+        if let Some(span) = at {
+            let at = span.time(configuration)?;
             let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
             for number in 0..reader.frames() {
-                let Some(instant) = reader.value(number, name)? else {
+                let Some(time) = reader.value(number, "time")? else {
                     continue;
                 };
-                (first, last) = (first.min(instant), last.max(instant));
-                let away = (instant - at).abs();
+                (first, last) = (first.min(time), last.max(time));
+                let away = (time - at).abs();
                 if away < found.1 {
                     found = (number, away);
                 }
@@ -141,8 +147,9 @@ impl FrameSource {
             let between = (last - first) / (reader.frames().max(2) - 1) as f64;
             if !(first - between..=last + between).contains(&at) && found.1.is_finite() {
                 let (path, frames, help) = (path.display(), reader.frames(), WINDOW_HELP);
+                let extent = extent(configuration, first, last);
                 let reason = format!(
-                    "no frame of {path} is of {name} {at}: its {frames} frames are from {first:.2} to {last:.2}"
+                    "no frame of {path} is near {span}: its {frames} frames are from {extent}"
                 );
                 return Err(RunError::Trajectory { reason, help });
             }
@@ -219,5 +226,18 @@ impl FrameSource {
     /// Whether there are no more frames.
     pub fn is_over(&self) -> bool {
         self.next >= self.frames
+    }
+}
+
+/// From which time to which frames are, for an error.
+fn extent(configuration: &Configuration, first: f64, last: f64) -> String {
+    let times = format!("t = {first:.1} to {last:.1}");
+    match configuration.drive.period() {
+        Some(period) => format!(
+            "period {:.2} to {:.2} ({times})",
+            first / period,
+            last / period
+        ),
+        None => times,
     }
 }

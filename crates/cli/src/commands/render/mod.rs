@@ -217,7 +217,7 @@ fn still(
         return Ok(Some(draw(&run, look, &frames)?));
     }
     if let Some(path) = trajectory(arguments, look)? {
-        let frames = FrameSource::nearest(&path, arguments.at)?;
+        let frames = FrameSource::nearest(&path, run.configuration(), arguments.at)?;
         return Ok(Some(draw(&run, look, &frames)?));
     }
     let run = start_of(&run)?;
@@ -276,7 +276,13 @@ fn frames(arguments: &RenderArguments, run: Run, look: Look) -> Result<FrameSour
     let with_contacts = look.needs_contacts();
     let window = arguments.window.unwrap_or_default();
     if let Some(path) = trajectory(arguments, look)? {
-        return Ok(FrameSource::of_file(&path, arguments.every, window)?);
+        let configuration = run.configuration();
+        return Ok(FrameSource::of_file(
+            &path,
+            configuration,
+            arguments.every,
+            window,
+        )?);
     }
     let has_periods = run.configuration().drive.period().is_some();
     let every = arguments.every.or(has_periods.then_some(INTERVAL));

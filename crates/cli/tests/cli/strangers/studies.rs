@@ -137,7 +137,7 @@ fn what_is_replaced_is_said() {
 fn pictures_that_cannot_be_had_are_refused() {
     let place = Place::new();
     place.does("run SMALL --out r --trajectory gsd --trajectory-every 1 --quiet");
-    let parts = ["no frame of", "period 300"];
+    let parts = ["no frame of", "300 periods"];
     place.refuses(
         "render r --from trajectory --at 300 --width 200 --out p.png",
         &parts,
