@@ -299,7 +299,9 @@ fn what_cannot_be_drawn_is_refused_in_words() {
 
 #[test]
 fn frames_of_a_trajectory_are_those_that_are_computed() {
-    let settings = "tube.waves=2 grains.number=40 run.periods=3";
+    // Instants are in periods of drive.strain_rate, however far the wave has come.
+    let settings = "tube.waves=2 grains.number=40 run.periods=3 \
+                    drive.schedule={form='ramp',parameter='strain_rate',from=0.05,to=0.02,end=3}";
     let configuration = || common::configuration("frictionless", settings);
     let request = TrajectoryRequest {
         formats: vec![TrajectoryFormat::Gsd],
@@ -359,17 +361,9 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
             &mut FrameSource::of_file(&path, &configuration(), Some(Span::Periods(0.5)), window)
                 .unwrap(),
         );
-    let periods: Vec<f64> = some
-        .iter()
-        .map(|frame| frame.value("period").unwrap())
-        .collect();
-    assert_eq!(
-        periods
-            .iter()
-            .map(|it| (4.0 * it).round())
-            .collect::<Vec<_>>(),
-        [4.0, 6.0, 8.0]
-    );
+    let period = configuration().drive.period().unwrap();
+    let quarters = some.iter().map(|frame| (4.0 * frame.time / period).round());
+    assert_eq!(quarters.collect::<Vec<_>>(), [4.0, 6.0, 8.0]);
     let [first, nearest] =
         FrameSource::nearest(&path, &configuration(), Some(Span::Periods(1.3))).unwrap();
     assert_eq!((first.step, nearest.step), (read[0].step, read[5].step));
