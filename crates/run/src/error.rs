@@ -109,7 +109,7 @@ pub enum RunError {
         reason: String,
     },
     /// A run has gone further than it is asked to go.
-    #[error("the run has done {} {unit} already, and the length asked for, in whole samples, is {} {unit}", (1e6 * done).round() / 1e6, (1e6 * asked).round() / 1e6)]
+    #[error("the run has done {} {unit} already, and the length asked for, in whole samples, is {}", (1e6 * done).round() / 1e6, (1e6 * asked).round() / 1e6)]
     TooShort {
         /// How much is done.
         done: f64,

@@ -1,7 +1,9 @@
 //! Studies, figures and reproduction.
 
-use crate::Place;
+#[cfg(unix)]
+use crate::limits::with_small_files;
 use crate::study::quick;
+use crate::{Outcome, Place};
 
 /// A place with a finished study of four runs in the folder `kept`.
 fn finished() -> Place {
@@ -225,4 +227,27 @@ fn what_a_store_lacks_is_told() {
         .shows(&["3 finished runs", "its files are gone"]);
     place.write("empty.tar", "");
     place.refuses("study import kept empty.tar", &["it is empty"]);
+}
+
+/// A full disk while tables are exported, which SIGXFSZ would end.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_an_error_of_an_export() {
+    let place = finished();
+    let said = with_small_files(&place, 0, "study export kept --out tables");
+    said.expect_code(1).says(&["tables", "File too large"]);
+    let tables = std::fs::read_dir(place.path("tables"));
+    assert_eq!(tables.map_or(0, Iterator::count), 0);
+}
+
+/// Commands to copy hold for a folder with a space in its name.
+#[test]
+fn folders_in_commands_to_copy_are_quoted() {
+    let place = Place::new();
+    place.does("run SMALL --out kept --quiet");
+    std::fs::rename(place.path("kept"), place.path("the run")).unwrap();
+    let mut command = place.command(["run", "--resume", "the run"]);
+    let said = Outcome::of(command.output().unwrap());
+    said.expect_code(2)
+        .says(&["peristalsis figures 'the run'", "--resume 'the run'"]);
 }
