@@ -113,6 +113,29 @@ fn threads_that_share_the_sorting_of_a_long_tube_do_not_change_a_bit() {
     }
 }
 
+/// A cluster that leaves the ends of the tube, and with it its copies, while a grain leaves its strip: the order is made anew
+/// with fewer strips in use, and with fewer places than there were before the last of them.
+#[test]
+fn strips_and_places_can_become_fewer() {
+    let wall = prescribed(lattice(40, 14, 1, 10.0), 5.0, 1.0, 0.1, 0.01);
+    let each = |number: u32| (0..number).map(move |it| f64::from(it) - 0.5 * f64::from(number - 1));
+    let layer = each(6).flat_map(|x| each(6).map(move |y| (x, y)));
+    let cluster =
+        layer.flat_map(|(x, y)| each(5).map(move |z| DVec3::new(x, y, z.rem_euclid(10.0))));
+    let mut places: Vec<DVec3> = cluster.collect();
+    places.push(DVec3::new(0.0, 3.9, 8.5));
+    let number = places.len();
+    let mut bodies = Bodies::grains_at_rest(places, vec![1.0; number]);
+    bodies.velocity.fill(DVec3::Z);
+    bodies.velocity[number - 1] = -DVec3::Y;
+    let [mut reference, mut fast] =
+        [Kernel::Reference, Kernel::Fast].map(|kernel| begin(&bodies, &wall, kernel));
+    reference.advance(100).unwrap();
+    fast.advance(100).unwrap();
+    assert!(fast.snapshot().sorting.unwrap().strips.len() > 1);
+    assert!(Apart::between(&reference, &fast).places < 1e-9);
+}
+
 #[test]
 fn an_order_that_cannot_be_is_refused() {
     let (bodies, wall) = mixed().pop().unwrap();

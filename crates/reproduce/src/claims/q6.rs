@@ -132,6 +132,20 @@ impl<'a> Samples<'a> {
         all.filter(move |one| one.point == expected(one.point))
     }
 
+    /// Where the flow still drifts in some runs.
+    fn drifting(&self) -> Vec<String> {
+        let drifts = |one: &&Sampled<'_>| !one.rows.iter().all(Row::is_stationary);
+        let point = |one: &Sampled<'_>| {
+            let Point {
+                friction,
+                tether,
+                rate,
+            } = one.point;
+            PROSE.text("point", values!(friction, tether, rate))
+        };
+        self.0.iter().filter(drifts).map(point).collect()
+    }
+
     /// How much is behind it: strain rates, and the values of the friction.
     fn statistics(&self) -> Statistics {
         let friction: Vec<Row<'a>> = self.friction().flat_map(|one| one.rows.clone()).collect();
@@ -209,6 +223,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for (name, sampled) in points {
         let flow = sampled.map(|one| one.flow);
         draft.quantity("flow", values!(name), flow);
+    }
+    let drifting = samples.drifting();
+    if !drifting.is_empty() {
+        draft.weakness("drifting", values!(points = drifting.join("; ")));
     }
     draft.table("forces", &[], samples.0.iter().map(Sampled::row));
     figures::causes(&mut draft, &samples)?;

@@ -126,7 +126,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.table("times at all strain rates", &[], cells);
     }
     draft.paragraph("method", values!(threshold = GIVEN_WAY));
-    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
+    draft.finding.weaknesses = PROSE.paragraphs(
+        "weaknesses",
+        values!(periods, runs = rows.len(), rate = jams[0].strain_rate),
+    );
     let (chart, shown) = match courses(study, &jams)? {
         none if none.is_empty() => (
             ChartFigure::new(times(&jams)),

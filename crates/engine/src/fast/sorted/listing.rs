@@ -44,7 +44,7 @@ impl Sorted {
         }
         // Tiles to spare stay, with what they have allocated, and hold nothing.
         for tile in &mut tiles[used..] {
-            (tile.end, tile.used) = (tile.first, 0);
+            (tile.first, tile.end, tile.used) = (0, 0, 0);
         }
         let (cutoff, instructions) = (pairs.reach + *skin, *instructions);
         let one = |tile: &mut Tile| {
