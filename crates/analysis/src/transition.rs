@@ -178,6 +178,11 @@ impl TransitionDetector {
         Ok(self.outcome())
     }
 
+    /// Periods that it has been given.
+    pub fn periods(&self) -> u64 {
+        self.periods
+    }
+
     /// The transition, or the time up to which the run has been watched without one.
     pub fn outcome(&self) -> Transition {
         match self.crossing {

@@ -120,7 +120,7 @@ impl Configuration {
                 list(table, keys, &mut entries);
             }
         }
-        let natural = self.natural_axial_velocity();
+        let natural = self.natural_axial_velocity(self.wave_speed());
         entries.retain(|entry| match entry.path().as_str() {
             "body.gravity" => self.body != Body::default(),
             "drive.body_force" => self.drive.body_force != 0.0,

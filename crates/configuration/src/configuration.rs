@@ -448,11 +448,19 @@ impl Configuration {
         Some(self.tube.radius - 0.5 * width)
     }
 
-    /// Velocity along the wave that the initial state has of itself \[d t^-1\].
-    pub(crate) fn natural_axial_velocity(&self) -> f64 {
+    /// Speed of the wave at t = 0 \[d t^-1\]: a schedule may have led it away from [`wave_speed`](Self::wave_speed).
+    pub fn initial_wave_speed(&self) -> f64 {
+        match self.drive.schedule(ScheduledParameter::StrainRate) {
+            Some(schedule) => schedule.value(0.0) * self.tube.wavelength,
+            None => self.wave_speed(),
+        }
+    }
+
+    /// Velocity along the wave that the initial state has of itself, in a wave of a speed \[d t^-1\].
+    pub(crate) fn natural_axial_velocity(&self, wave_speed: f64) -> f64 {
         match self.initial.state {
             InitialState::Rest | InitialState::Settled | InitialState::Placed => 0.0,
-            InitialState::Jammed => self.wave_speed(),
+            InitialState::Jammed => wave_speed,
         }
     }
 }

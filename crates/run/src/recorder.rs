@@ -136,19 +136,21 @@ impl Recorder {
             self.ratios = -0.0;
             self.averages.push([average]);
             self.dispersion.end_period(&self.observer, &view);
-            // Without grains inside there is no ratio, and the search ends.
-            if !average.is_finite() || self.push(average).is_none() {
-                self.detector = None;
-                self.ladder.clear();
-            }
+            self.search(average);
         }
     }
 
-    fn push(&mut self, average: f64) -> Option<()> {
-        for detector in &mut self.ladder {
-            detector.push(average).ok()?;
+    /// Looks for transitions in the average of one more period. A period without a ratio ends the search: there are no grains
+    /// inside, or the wave stands still. What was found before stays.
+    fn search(&mut self, average: f64) {
+        let before = self.averages.count() - 1;
+        for detector in self.ladder.iter_mut().chain(&mut self.detector) {
+            if average.is_finite() && detector.periods() == before {
+                detector.push(average).expect("a finite average");
+            }
         }
-        self.detector.as_mut()?.push(average).ok().map(|_| ())
+        self.detector
+            .take_if(|detector| detector.periods() == before && !detector.is_complete());
     }
 
     /// Takes the series out, until they are given back.
@@ -255,16 +257,20 @@ impl Recorder {
     }
 }
 
-/// J/Jmax at the start, <v_z>/c along the wave, with the speed c that [`Configuration::wave_speed`] says: 0 at rest, 1 of
-/// grains that move with the wave; 0 of none.
+/// J/Jmax at the start, <v_z>/c along the wave, with its speed c at the start: 0 at rest, 1 of grains that move with the
+/// wave; 0 of none, or where the wave stands.
 fn initial_ratio(configuration: &Configuration, simulation: &Simulation) -> f64 {
-    let speed = configuration.heading() * configuration.wave_speed();
+    let speed = configuration.heading() * configuration.initial_wave_speed();
     let bodies = simulation.bodies();
     let present = (0..bodies.grains).filter(|&grain| simulation.is_present(grain));
     let (sum, number) = present.fold((0.0, 0.0), |(sum, number), grain| {
         (sum + bodies.velocity[grain].z / speed, number + 1.0)
     });
-    if number > 0.0 { sum / number } else { 0.0 }
+    if number > 0.0 && speed != 0.0 {
+        sum / number
+    } else {
+        0.0
+    }
 }
 
 /// The way from J/Jmax at the start to a threshold. Whoever starts at it leaves it upward, in jammed flow downward.

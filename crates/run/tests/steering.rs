@@ -205,6 +205,40 @@ fn a_wave_whose_period_is_shorter_than_a_step_is_refused_and_a_few_steps_are_war
     assert!(run.warnings().iter().all(|it| it.key != "drive.schedule"));
 }
 
+/// A period in which the wave stands still has no J/Jmax. What was found before stays; without that there is nothing to tell.
+#[test]
+fn a_pause_leaves_the_transition_that_was_found() {
+    let found = |threshold: f64| {
+        let words = format!(
+            "tube.waves=2 grains.number=40 drive.width=2.4 run.periods=8 observe.transition_threshold={threshold} \
+             drive.schedule={{form='steps',parameter='strain_rate',at=[5,6],values=[0,0.05]}}"
+        );
+        finish(Run::new(configuration("frictionless", &words)).unwrap())
+    };
+    let run = found(0.1);
+    assert!(run.recorder().averages()[5].is_nan());
+    assert!(run.recorder().transition_time().unwrap() < 60.0);
+    assert!(found(2.0).recorder().transition().is_none());
+}
+
+/// Jammed grains begin with the wave, also where its schedule begins at another speed.
+#[test]
+fn jammed_grains_begin_at_the_speed_of_the_wave() {
+    let words = "initial.state=jammed tube.waves=2 grains.number=40 run.periods=1 \
+                 drive.schedule={form='ramp',parameter='strain_rate',from=0.01,to=0.05,end=2}";
+    let configuration = configuration("frictionless", words);
+    assert_eq!(configuration.initial.axial_velocity, 0.1);
+    let again = Configuration::from_toml("again", &configuration.to_toml()).unwrap();
+    assert_eq!(again, configuration);
+    let run = finish(Run::new(configuration).unwrap());
+    let first = &run.recorder().samples()[0];
+    assert!(
+        (0.5..1.5).contains(&first.flow_rate_ratio),
+        "{}",
+        first.flow_rate_ratio
+    );
+}
+
 /// A wave that stops and goes on: it runs while it may, and J/Jmax counts what flowed in the pauses.
 #[test]
 fn a_drive_pauses_and_goes_on() {

@@ -415,7 +415,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
         // One zero, not two.
         keys.initial.axial_velocity + 0.0
     } else {
-        configuration.natural_axial_velocity()
+        configuration.natural_axial_velocity(configuration.initial_wave_speed())
     };
     check_settling(&configuration, context);
     inlet::check_direction(&configuration, context);
