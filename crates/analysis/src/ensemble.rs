@@ -51,10 +51,10 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
 ///
 /// ```
 /// assert_eq!(peristalsis_analysis::variance(&[1.0, 2.0, 3.0]), 1.0);
-/// assert!(peristalsis_analysis::variance(&[1.0]).is_nan());
+/// assert!(peristalsis_analysis::variance(&[1.0]).is_nan() && peristalsis_analysis::variance(&[]).is_nan());
 /// ```
 pub fn variance(values: &[f64]) -> f64 {
-    mean_and_scatter(values).1 / (values.len() as f64 - 1.0)
+    mean_and_scatter(values).1 / (values.len().max(1) - 1) as f64
 }
 
 /// Mean and variance of independent values with their jackknife errors.

@@ -528,7 +528,7 @@ fn too_few_runs_leave_every_verdict_open() {
     }
 }
 
-/// REFEREE, F9: jams of denser grains have contacts; whether both flows exist there is told, either way.
+/// REFEREE, F9: jams of denser grains have contacts; whether the start matters there is told, either way.
 #[test]
 fn denser_grains_are_told_from_both_starts() {
     let mut evidence = rows::evidence(&[]);
@@ -550,7 +550,7 @@ fn denser_grains_are_told_from_both_starts() {
     let told = found.paragraphs.last().unwrap();
     assert_says(
         told,
-        "both flows beyond *w*_{c} at *ρ* = 0.3, one at *ρ* = 0.45.",
+        "depends on the start at *ρ* = 0.3, not at 0.45.",
     );
     assert_says(told, "with 5.0 contacts a grain");
 }

@@ -255,8 +255,8 @@ impl Dense {
         self.flows[1] - self.flows[0]
     }
 
-    /// Whether the starts end in two flows.
-    fn is_bistable(&self) -> bool {
+    /// Whether the late flow depends on the start.
+    fn depends_on_start(&self) -> bool {
         let apart = self.apart();
         apart.value > LEAST_FALL && apart.deviations_from(0.0) > CLEAR
     }
@@ -270,7 +270,7 @@ impl Dense {
     }
 }
 
-/// Whether denser grains, which touch one another for long, have both flows.
+/// Whether the late flow of denser grains, which touch one another for long, depends on the start.
 fn of_dense_grains(draft: &mut Draft, rows: Vec<Row<'_>>) {
     let key = |row: &Row<'_>| (row.volume_fraction(), row.width());
     let groups = grouped(rows, key).into_iter();
@@ -287,7 +287,7 @@ fn of_dense_grains(draft: &mut Draft, rows: Vec<Row<'_>>) {
     let of_both = |is: bool| {
         let those = both
             .clone()
-            .filter(|(_, widths)| widths.iter().any(|one| one.is_bistable()) == is);
+            .filter(|(_, widths)| widths.iter().any(|one| one.depends_on_start()) == is);
         match listed(those.map(|(fraction, _)| fraction)) {
             none if none.is_empty() => "none".to_owned(),
             some => some,

@@ -255,18 +255,26 @@ fn line(seed: u64, outcome: &Outcome) -> String {
     format!("seed {seed}: {}{ending}", words.join("; "))
 }
 
-/// New warnings of the replicates: the first warning of each key, with its seed.
+/// New warnings of the replicates: of each key the first, with its seed and the number of other seeds that have one.
 fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
-    let mut seen: Vec<Warning> = Vec::new();
+    let mut seen: Vec<(&Warning, u64, usize)> = Vec::new();
     for (seed, _, outcome) in worked {
         let warnings = outcome.iter().flat_map(|outcome| &outcome.summary.warnings);
         for warning in warnings.filter(|warning| !said.contains(warning)) {
-            if seen.iter().all(|known| known.key != warning.key) {
-                seen.push(warning.clone().under(&format!("with seed {seed}")));
+            match seen.iter_mut().find(|(known, ..)| known.key == warning.key) {
+                Some((_, first, others)) => *others += usize::from(first != seed),
+                None => seen.push((warning, *seed, 0)),
             }
         }
     }
-    seen
+    let told = |(warning, seed, others): (&Warning, u64, usize)| {
+        let alike = match others {
+            0 => String::new(),
+            others => format!(" (and likewise with {others} more)"),
+        };
+        warning.clone().under(&format!("with seed {seed}{alike}"))
+    };
+    seen.into_iter().map(told).collect()
 }
 
 /// Prints what the replicates came to, and answers the exit code.
