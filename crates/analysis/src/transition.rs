@@ -178,9 +178,13 @@ impl TransitionDetector {
         Ok(self.outcome())
     }
 
-    /// Periods that it has been given.
-    pub fn periods(&self) -> u64 {
-        self.periods
+    /// Takes a period without an average, as of a wave that stands still: a crossing under way is forgotten. The line to the
+    /// next average begins with the last one, as if it were of the period before.
+    pub fn skip(&mut self) {
+        if !self.is_complete() {
+            self.crossing = None;
+        }
+        self.periods += 1;
     }
 
     /// The transition, or the time up to which the run has been watched without one.

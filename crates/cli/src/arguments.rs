@@ -87,7 +87,7 @@ pub(crate) struct ConfigurationArguments {
     /// new length of the whole run, to the same bits as one run of that length.
     #[arg(long, value_name = "N", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) periods: Option<f64>,
-    /// Length of the run in time [t] (run.duration).
+    /// Length of the run in time [t] (run.duration), rounded up to whole samples.
     #[arg(long, value_name = "T", conflicts_with = "periods", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) duration: Option<f64>,
 }

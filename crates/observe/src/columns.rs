@@ -83,7 +83,7 @@ pub const COLUMNS: &[Column] = &[
     row("contact_energy", "m d^2/t^2", Always, "elastic energy of contacts", |s| s.contact_energy),
     row("axial_momentum", "m d/t", Always, "axial momentum of the grains inside, along the wave", |s| s.axial_momentum),
     row("angular_momentum", "m d^2/t", Always, "angular momentum of the grains inside about +z, spin included", |s| s.angular_momentum),
-    row("bottleneck", "d", Always, "smallest bottleneck: twice the tube's least radius, to the wall's centres", |s| s.bottleneck),
+    row("bottleneck", "d", Always, "smallest bottleneck: twice the tube's least radius, to the wall's centres; of an elastic wall the least mean over a slice one ring's spacing thick", |s| s.bottleneck),
     row("energy_residual", "1", Always, "|what the ledger misses|/(integral of |power of wall and drive| + |work of the body force|)", |s| s.energy_residual),
     row("wall_work", "m d^2/t^2", Always, "ledger: work of the prescribed wall", |s| s.ledger.wall_work),
     row("normal_dissipated", "m d^2/t^2", Always, "ledger: lost along normals", |s| s.ledger.normal_dissipated),

@@ -140,17 +140,13 @@ impl Recorder {
         }
     }
 
-    /// Looks for transitions in the average of one more period. A period without a ratio ends the search: there are no grains
-    /// inside, or the wave stands still. What was found before stays.
+    /// Looks for transitions in the average of one more period; there is none without grains inside, or where the wave stands.
     fn search(&mut self, average: f64) {
-        let before = self.averages.count() - 1;
         for detector in self.ladder.iter_mut().chain(&mut self.detector) {
-            if average.is_finite() && detector.periods() == before {
-                detector.push(average).expect("a finite average");
+            if detector.push(average).is_err() {
+                detector.skip();
             }
         }
-        self.detector
-            .take_if(|detector| detector.periods() == before && !detector.is_complete());
     }
 
     /// Takes the series out, until they are given back.

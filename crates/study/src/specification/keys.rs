@@ -40,7 +40,7 @@ fn one() -> u32 {
 }
 
 /// Adds points where the flow changes its kind: for each combination of the other axes, bisection between the values where
-/// all runs had a transition and where none had.
+/// all runs had a transition and where none had; where runs differ up to the last value, where the majority changes.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RefineKeys {

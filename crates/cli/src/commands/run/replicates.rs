@@ -14,7 +14,7 @@ use peristalsis_run::{
 };
 use serde_json::{Value, json};
 
-use super::words::{DISCHARGE, MASS_FLOW, mass_flow, measured};
+use super::words::{DISCHARGE, MASS_FLOW, is_too_short, mass_flow, measured};
 use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, not_diverged, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
@@ -233,6 +233,7 @@ fn line(seed: u64, outcome: &Outcome) -> String {
         words.push(format!("J/Jmax = {said}{within}"));
         words.push(match summary.transition_time {
             Some(time) => format!("transition at t = {time:.1}"),
+            None if is_too_short(summary) => "too short to tell of a transition".to_owned(),
             None => "no transition".to_owned(),
         });
     }
@@ -344,7 +345,8 @@ fn conclude(
             text += &format!("{name} in {unit} = {}\n", flow.in_words());
         }
         // Without a wave there is nothing to pass through.
-        let runs = flow.as_ref().map_or(0, |_| complete.len());
+        let tell = complete.iter().filter(|it| !is_too_short(&it.summary));
+        let runs = flow.as_ref().map_or(0, |_| tell.count());
         match (&transition, runs) {
             (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words()),
             (None, 0) => {}

@@ -1,7 +1,7 @@
 //! The results of a run, in words.
 
 use peristalsis_analysis::CONFIRMATION_PERIODS;
-use peristalsis_analysis::number::{known_error, with_error};
+use peristalsis_analysis::number::{known_error, rounded, with_error};
 use peristalsis_configuration::{HOUR, Units};
 use peristalsis_reproduce::report::plain_text;
 use peristalsis_run::{Discharge, Pumping, Run, Summary};
@@ -64,7 +64,7 @@ fn transition(run: &Run, summary: &Summary) -> String {
             periods(time)
         ),
         None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
-        None if run.recorder().periods() < u64::from(CONFIRMATION_PERIODS) => format!(
+        None if is_too_short(summary) => format!(
             "too short to tell of a transition: {} periods, and {CONFIRMATION_PERIODS} whole ones in a row confirm it",
             periods(summary.time)
         ),
@@ -72,23 +72,28 @@ fn transition(run: &Run, summary: &Summary) -> String {
     }
 }
 
+/// Whether a run has fewer periods than tell of a transition.
+pub(super) fn is_too_short(summary: &Summary) -> bool {
+    summary.periods + 1e-6 < f64::from(CONFIRMATION_PERIODS)
+}
+
 /// The late flow beside that of a Newtonian fluid, and whether it still changes.
 fn flow(run: &Run, summary: &Summary) -> String {
     let configuration = run.configuration();
-    let late = 100.0 * configuration.observe.late_fraction;
+    let late = rounded(100.0 * configuration.observe.late_fraction, 2);
     let (ratio, error) = summary.flow_rate_ratio;
     let said = measured(summary.flow_rate_ratio);
     let mut flow = match known_error(ratio, error) {
-        Some(_) => format!("J/Jmax = {said} within this run, mean of its last {late:.0} %"),
+        Some(_) => format!("J/Jmax = {said} within this run, mean of its last {late} %"),
         None if error.is_finite() => {
-            format!("J/Jmax = {said} throughout its last {late:.0} %")
+            format!("J/Jmax = {said} throughout its last {late} %")
         }
         None if ratio.is_finite() => {
-            format!("J/Jmax = {said}, mean of its last {late:.0} % (too short for an error)")
+            format!("J/Jmax = {said}, mean of its last {late} % (too short for an error)")
         }
         None if summary.flow_rate().is_nan() => "no sample was taken".to_owned(),
         None => format!(
-            "J = {}, mean of its last {late:.0} %; no J/Jmax without grains inside and a moving wave",
+            "J = {}, mean of its last {late} %; no J/Jmax without grains inside and a moving wave",
             significant(summary.flow_rate() + 0.0, 4)
         ),
     };
