@@ -94,20 +94,34 @@ impl Sampled<'_> {
 }
 
 /// All points that were sampled.
-struct Samples<'a>(Vec<Sampled<'a>>);
+#[derive(Default)]
+struct Samples<'a> {
+    steady: Vec<Sampled<'a>>,
+    /// Where most runs still drift.
+    drifting: Vec<Point>,
+}
 
 impl<'a> Samples<'a> {
     fn of(results: &'a StudyResults) -> Self {
-        let groups = grouped(results.rows(), Point::of).into_iter();
-        let sampled = groups.filter_map(|(point, rows)| {
-            let flow = mean(&rows, "flow_rate_ratio")?;
-            Some(Sampled { point, rows, flow })
-        });
-        Self(sampled.collect())
+        let mut samples = Self::default();
+        for (point, all) in grouped(results.rows(), Point::of) {
+            let rows: Vec<Row<'a>> = all
+                .iter()
+                .filter(|row| row.is_stationary())
+                .copied()
+                .collect();
+            match mean(&rows, "flow_rate_ratio") {
+                Some(flow) if 2 * rows.len() > all.len() => {
+                    samples.steady.push(Sampled { point, rows, flow });
+                }
+                _ => samples.drifting.push(point),
+            }
+        }
+        samples
     }
 
     fn at(&self, point: Point) -> Option<&Sampled<'a>> {
-        self.0.iter().find(|one| one.point == point)
+        self.steady.iter().find(|one| one.point == point)
     }
 
     /// All that differ from the preset in its friction only.
@@ -128,22 +142,21 @@ impl<'a> Samples<'a> {
     }
 
     fn along(&self, expected: impl Fn(Point) -> Point) -> impl Iterator<Item = &Sampled<'a>> {
-        let all = self.0.iter();
+        let all = self.steady.iter();
         all.filter(move |one| one.point == expected(one.point))
     }
 
-    /// Where the flow still drifts in some runs.
-    fn drifting(&self) -> Vec<String> {
-        let drifts = |one: &&Sampled<'_>| !one.rows.iter().all(Row::is_stationary);
-        let point = |one: &Sampled<'_>| {
-            let Point {
+    /// The points that are left out.
+    fn left_out(&self) -> Vec<String> {
+        let point = |one: &Point| {
+            let &Point {
                 friction,
                 tether,
                 rate,
-            } = one.point;
+            } = one;
             PROSE.text("point", values!(friction, tether, rate))
         };
-        self.0.iter().filter(drifts).map(point).collect()
+        self.drifting.iter().map(point).collect()
     }
 
     /// How much is behind it: strain rates, and the values of the friction.
@@ -155,7 +168,7 @@ impl<'a> Samples<'a> {
         Statistics {
             strain_rates: rate.widths,
             replicates: friction.replicates.min(rate.replicates),
-            runs: self.0.iter().map(|one| one.rows.len()).sum(),
+            runs: self.steady.iter().map(|one| one.rows.len()).sum(),
             ..friction
         }
     }
@@ -224,11 +237,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let flow = sampled.map(|one| one.flow);
         draft.quantity("flow", values!(name), flow);
     }
-    let drifting = samples.drifting();
-    if !drifting.is_empty() {
-        draft.weakness("drifting", values!(points = drifting.join("; ")));
+    let points = samples.left_out().join("; ");
+    if !points.is_empty() {
+        draft.weakness("drifting", values!(points));
     }
-    draft.table("forces", &[], samples.0.iter().map(Sampled::row));
+    draft.table("forces", &[], samples.steady.iter().map(Sampled::row));
     figures::causes(&mut draft, &samples)?;
     figures::balance(&mut draft, results, &samples)?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics))

@@ -90,6 +90,23 @@ impl<'a> AtForce<'a> {
     }
 }
 
+/// The largest force at which most jams give way, and the least at which none does.
+fn ends<'a, 'b>(jams: &'b [AtForce<'a>]) -> (Option<&'b AtForce<'a>>, Option<&'b AtForce<'a>>) {
+    (
+        jams.iter().rfind(|one| one.most_yield()),
+        jams.iter().find(|one| one.times.is_empty()),
+    )
+}
+
+/// Whether jams give way at some forces of one strain rate and last at larger ones; not, where none gives way.
+fn yields(jams: &[AtForce<'_>]) -> Option<bool> {
+    match ends(jams) {
+        (Some(gives_way), Some(lasts)) if gives_way.force < lasts.force => Some(true),
+        _ if jams.iter().all(|one| one.times.is_empty()) => Some(false),
+        _ => None,
+    }
+}
+
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let study = evidence.study("elastic-yielding")?;
     let (rows, branches) = (study.rows(), evidence.study("elastic-branches")?.rows());
@@ -97,11 +114,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if jams.is_empty() {
         return Ok(PROSE.nothing(Statistics::default()));
     }
-    let gives_way = jams.iter().rfind(|one| one.most_yield());
-    let lasts = jams.iter().find(|one| one.times.is_empty());
-    let verdict = match (gives_way, lasts) {
-        (Some(gives_way), Some(lasts)) if gives_way.force < lasts.force => Verdict::Reproduced,
-        (None, Some(_)) if jams.iter().all(|one| one.times.is_empty()) => Verdict::Differs,
+    let all = AtForce::all_of(&branches);
+    let (gives_way, lasts) = ends(&jams);
+    let at_rates = all.chunk_by(|one, other| one.strain_rate == other.strain_rate);
+    let found: Vec<Option<bool>> = at_rates.chain([&jams[..]]).map(yields).collect();
+    let verdict = match all_hold(&found) {
+        Some(true) => Verdict::Reproduced,
+        Some(false) if found.iter().all(|one| *one == Some(false)) => Verdict::Differs,
         _ => Verdict::Open,
     };
     let periods = longest(&rows);
@@ -120,16 +139,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.quantity("time", values!(force, runs, censored), one.mean());
     }
     draft.table("times", &[], jams.iter().map(AtForce::cells));
-    let all = AtForce::all_of(&branches);
     if !all.is_empty() {
         let cells = all.iter().map(AtForce::cells);
         draft.table("times at all strain rates", &[], cells);
     }
     draft.paragraph("method", values!(threshold = GIVEN_WAY));
-    draft.finding.weaknesses = PROSE.paragraphs(
-        "weaknesses",
-        values!(periods, runs = rows.len(), rate = jams[0].strain_rate),
-    );
+    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     let (chart, shown) = match courses(study, &jams)? {
         none if none.is_empty() => (
             ChartFigure::new(times(&jams)),
