@@ -1,7 +1,7 @@
 import all from "./ghosts.json";
 import type { Driven, Welcome } from "./protocol";
 
-/** A published curve: J/Jmax against the width, the force or the friction, means over replicates. */
+/** A published curve: J/Jmax against the width, the force or the friction, means over replicates that ended in one flow. */
 export interface Ghost {
   strain_rate: number;
   start: string;
@@ -10,15 +10,13 @@ export interface Ghost {
 
 /** The published branches of a tube like this one, at the strain rate that is nearest to its own. */
 export function ghostsOf(tube: Welcome, { strain_rate, friction }: Driven): Ghost[] {
-  const isUsual = tube.radius === 1.5 && tube.wavelength === 10 && friction === null;
-  const lattice = `${tube.spheres_per_ring}x${tube.rings_per_wave}`;
-  if (tube.control === "strain") return isUsual ? near((all as Record<string, Ghost[]>)[lattice] ?? [], strain_rate) : [];
-  return friction !== null && Math.abs(friction - 0.4) < 0.02 ? near(all.elastic, strain_rate) : [];
+  const known = (all as Record<string, Ghost[]>)[tube.published ?? ""] ?? [];
+  return friction === null || Math.abs(friction - 0.4) < 0.02 ? near(known, strain_rate) : [];
 }
 
 /** The published flow by friction, where the tube is driven as there. */
 export function ghostsOfFriction(tube: Welcome, { strain_rate, force_amplitude, friction }: Driven): Ghost[] {
-  const is = tube.control === "stress" && friction !== null && Math.abs((force_amplitude ?? 0) - 0.002) < 1e-4;
+  const is = tube.published === "frictional" && friction !== null && Math.abs((force_amplitude ?? 0) - 0.002) < 1e-4;
   return is ? near(all.friction, strain_rate) : [];
 }
 

@@ -28,7 +28,7 @@ export function acrossOf(tube: Welcome, frame: Frame): Across {
   const byFriction = ghostsOfFriction(tube, frame.driven);
   if (byFriction.length > 0)
     return {
-      name: "friction μ", unit: "", of: (row) => row.friction ?? NaN, small: 0.02, opens: 1, range: friction ?? [0, 1],
+      name: "kinetic friction μₖ", unit: "", of: (row) => row.friction ?? NaN, small: 0.02, opens: 1, range: friction ?? [0, 1],
       ways: ["more friction", "less"], ghosts: byFriction,
     };
   const ghosts = ghostsOf(tube, frame.driven);
@@ -36,14 +36,14 @@ export function acrossOf(tube: Welcome, frame: Frame): Across {
   if (tube.control === "strain")
     return { name: "width w / d", unit: " d", of, small: 0.012, opens: 1, range: width ?? [0, 1], ways: ["widened", "narrowed"], ghosts };
   return {
-    name: "force amplitude f / (m d/t²)", unit: " m d/t²", of, small: 1e-4, opens: -1, range: force_amplitude ?? [0, 1],
+    name: "force amplitude fᴾ / (m d/t²)", unit: " m d/t²", of, small: 1e-4, opens: -1, range: force_amplitude ?? [0, 1],
     ways: ["more force", "less"], ghosts,
   };
 }
 
 /** In words. */
 export function wordsOf({ jams, letsGo, not }: Thresholds, { name, unit, opens }: Across): string {
-  const symbol = name.split(" ").find((word) => /^[wfμ]$/.test(word)) ?? name;
+  const symbol = name.split(" ").find((word) => /^(w|fᴾ|μₖ)$/.test(word)) ?? name;
   const at = (value: number) => `${symbol} = ${written(value)}${unit}`;
   const over = ([from, to]: Span) => (from === to ? `at ${at(from)}` : `between ${at(from)} and ${written(to)}${unit}`);
   const said: string[] = [];
@@ -63,7 +63,7 @@ export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, 
   const across = acrossOf(tube, frame);
   const rows = film.rows.filter((row) => Number.isFinite(across.of(row)));
   const { ghosts, range } = across;
-  const newtonian = across.name.startsWith("friction") ? [] : tube.newtonian;
+  const newtonian = across.name.includes("friction") ? [] : tube.newtonian;
   let [least, most] = [-0.1, 1.05];
   for (const { average } of rows) if (Number.isFinite(average)) [least, most] = [Math.min(least, average), Math.max(most, average)];
   let [from, to] = [Infinity, -Infinity];

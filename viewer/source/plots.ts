@@ -23,7 +23,8 @@ export function drawFlow(chart: Chart, film: Film, tube: Welcome, clock: number,
   const end = Math.max(rows.at(-1)?.clock ?? 0, ahead, recorded?.at(-1) ?? 0);
   const last = recorded ? end : Math.max(end, 2);
   let [least, most] = [-0.1, 1.05];
-  for (const { average } of rows) if (Number.isFinite(average)) [least, most] = [Math.min(least, average), Math.max(most, average)];
+  const shown = [...rows.map(({ average }) => average), ...record.filter(([time]) => time <= last).map(([, ratio]) => ratio ?? NaN)];
+  for (const ratio of shown) if (Number.isFinite(ratio)) [least, most] = [Math.min(least, ratio), Math.max(most, ratio)];
   const legend: Entry[] = [
     { text: "each sample", colour: colours.line },
     { text: "mean over the period before", colour: colours.accent },
@@ -114,8 +115,14 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   }
   // A mean over a handful of looks at grains is none.
   const means = Array.from(velocity, (sum, bin) => (number[bin] >= FEWEST ? sum / number[bin] : NaN));
-  const least = Math.min(-0.25, ...means.filter(Number.isFinite));
-  const most = Math.max(1.3, ...means.filter(Number.isFinite));
+  const middle = (bin: number) => (bin + 0.5) / bins;
+  const radius = outline(film.frame(shown) ?? frames.at(-1), tube);
+  // Of the clear tube, inside the spheres of the wall.
+  const clear = (bin: number) => radius[Math.round(middle(bin) * (radius.length - 1))] - 0.5 * tube.wall_sphere_diameter;
+  const each = (tube.wavelength / bins) * tube.waves * frames.length * Math.PI;
+  const fractions = Array.from(volume, (sum, bin) => sum / (each * clear(bin) ** 2));
+  const drawn = [...means, ...fractions].filter(Number.isFinite);
+  const [least, most] = [Math.min(-0.25, ...drawn), Math.max(1.3, ...drawn)];
   const area = `color-mix(in srgb, ${colours.wall} 20%, transparent)`;
   const legend: Entry[] = [
     { text: `mean axial velocity/${standing === null ? "c" : `(${written(standing)} d/t)`}`, colour: colours.accent },
@@ -124,9 +131,7 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   ];
   const position = tube.unit_period === null ? "position z/λ" : "position (z − ct)/λ";
   chart.begin([0, 1], [least, most], [position, ""], colours, { legend });
-  const middle = (bin: number) => (bin + 0.5) / bins;
   // The tube's outline above and below the middle of the chart.
-  const radius = outline(film.frame(shown) ?? frames.at(-1), tube);
   const centre = 0.5 * (least + most);
   const scale = (0.46 * (most - least)) / Math.max(...radius, 1);
   const { context } = chart;
@@ -140,11 +145,7 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   context.fillStyle = area;
   context.fill();
   context.restore();
-  // Of the clear tube, inside the spheres of the wall.
-  const places = radius.length - 1;
-  const clear = (bin: number) => radius[Math.round(middle(bin) * places)] - 0.5 * tube.wall_sphere_diameter;
-  const each = (tube.wavelength / bins) * tube.waves * frames.length * Math.PI;
-  chart.curve(Array.from(volume, (sum, bin) => [middle(bin), sum / (each * clear(bin) ** 2)]), colours.text, 1.5, [2, 3]);
+  chart.curve(fractions.map((fraction, bin) => [middle(bin), fraction]), colours.text, 1.5, [2, 3]);
   chart.curve([[0, 0], [1, 0]], colours.faint, 1);
   chart.curve(means.map((mean, bin) => [middle(bin), mean]), colours.accent, 2);
   if (!last || frames.length < 2) return "of the frame shown";

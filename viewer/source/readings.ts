@@ -62,9 +62,9 @@ export function factsOfDrive(values: Driven): Facts {
   };
   return [
     ...of("width", "width w", " d"),
-    ...of("force_amplitude", "force amplitude f", " m d/t²"),
+    ...of("force_amplitude", "force amplitude fᴾ", " m d/t²"),
     ...of("strain_rate", "strain rate ε̇", " t⁻¹"),
-    ...of("friction", "friction μ", ""),
+    ...of("friction", "kinetic friction μₖ", ""),
   ];
 }
 

@@ -45,6 +45,8 @@ export class Readout {
   spaceTime = new SpaceTime();
   /** When the summary was told, and when and from which time the pace was measured. */
   private summarised = -SUMMARIES;
+  /** Whether it played then. */
+  private played = false;
   private measuredFrom: [number, number] = [0, 0];
 
   constructor(private readonly sliders: Sliders) {}
@@ -99,7 +101,9 @@ export class Readout {
     fill(element("numbers"), tube.recorded ? [...factsOfDrive(frame.driven), ...facts] : facts);
     fill(element("warnings"), frame.warnings.map(({ key, message }) => [key, message]));
     showGrain(frame, tube, scene?.picked ?? -1);
-    if (now - this.summarised > SUMMARIES) {
+    // At once where it starts or stops playing.
+    if (now - this.summarised > SUMMARIES || frame.playing !== this.played) {
+      this.played = frame.playing;
       this.summarised = now;
       element("summary").textContent = summaryOf(frame, tube, ratio);
     }

@@ -54,7 +54,7 @@ const QUANTITIES = [
 ];
 
 /** Columns that say what tube it is: no line joins tubes unlike each other, unless one of these goes across. */
-const TUBE = ["tube.radius", "tube.wavelength", "tube.spheres_per_ring", "tube.rings_per_wave"];
+export const TUBE = ["tube.radius", "tube.wavelength", "tube.arrangement", "tube.spheres_per_ring", "tube.rings_per_wave"];
 
 /** Columns of numbers that are neither. */
 const NEITHER = new Set(["replicate", "seed", "grains", "transition_threshold", "steps"]);

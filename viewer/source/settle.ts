@@ -1,7 +1,7 @@
 /** Makes the choice of a study page one that the study has. */
 import type { Choice } from "./choice";
 import { firstFamily, firstQuantity } from "./first";
-import type { Parameter, Results, Value } from "./results";
+import { type Parameter, type Results, TUBE, type Value } from "./results";
 
 /** What may go across: columns of numbers. */
 export const numeric = ({ parameters }: Results): Parameter[] =>
@@ -45,11 +45,16 @@ function fixed(choice: Choice, results: Results): Map<string, Value> {
   return found;
 }
 
-/** Whether rows at one place of both axes differ in this column. */
+/** What a curve must be of one of: the tube, and how wide or strongly it is driven. */
+const OF_A_CURVE = new Set([...TUBE, "drive.width", "drive.force_amplitude"]);
+
+/** Whether rows at one place of both axes, or of one curve, differ in this column. */
 function isOpen({ x, other }: Choice, results: Results, name: string, rows: number[]): boolean {
   const seen = new Map<string, Value | null>();
+  const isAcross = TUBE.includes(x) && TUBE.includes(name);
   return rows.some((row) => {
-    const place = JSON.stringify([results.value(x, row), results.value(other, row)]);
+    const along = OF_A_CURVE.has(name) && !isAcross ? null : results.value(x, row);
+    const place = JSON.stringify([along, results.value(other, row)]);
     const value = results.value(name, row);
     if (!seen.has(place)) seen.set(place, value);
     return seen.get(place) !== value;

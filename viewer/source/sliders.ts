@@ -3,9 +3,9 @@ import type { Driven, Steered, Welcome } from "./protocol";
 
 const NAMES: Record<Steered, { name: string; digits: number }> = {
   width: { name: "Width <i>w</i> / <i>d</i>", digits: 3 },
-  force_amplitude: { name: "Force amplitude <i>f</i> / (m d/t²)", digits: 5 },
+  force_amplitude: { name: "Force amplitude <i>f</i><sup>P</sup> / (m d/t²)", digits: 5 },
   strain_rate: { name: "Strain rate <i>ε̇</i> / t⁻¹", digits: 5 },
-  friction: { name: "Friction <i>μ</i>", digits: 2 },
+  friction: { name: "Kinetic friction <i>μ</i><sub>k</sub>", digits: 2 },
 };
 
 /** Steps of a slider, about: 1, 2 or 5 of a power of ten. */

@@ -24,6 +24,8 @@ export class SpaceTime {
   private readonly image = document.createElement("canvas");
   private painted = 0;
   private scale: Colour[] = [];
+  /** How many waves are jammed, and since when so many. */
+  private jammed = { waves: 0, since: 0 };
 
   see(frame: Frame, tube: Welcome): void {
     if (tube.waves < FEWEST_WAVES) return;
@@ -103,7 +105,8 @@ export class SpaceTime {
     const last = this.looks.at(-1);
     if (!last) return "";
     const ratios = Array.from(last.flows, (sum, wave) => sum / last.grains[wave]);
-    const jammed = ratios.filter((ratio) => ratio > 0.5).length;
-    return `${jammed} of ${ratios.length} waves jammed after ${written(last.clock)} T`;
+    const waves = ratios.filter((ratio) => ratio > 0.5).length;
+    if (waves !== this.jammed.waves || last.clock < this.jammed.since) this.jammed = { waves, since: last.clock };
+    return `${waves} of ${ratios.length} waves jammed${waves > 0 ? `, since ${written(this.jammed.since)} T` : ""}`;
   }
 }

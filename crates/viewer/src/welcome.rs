@@ -1,6 +1,6 @@
 //! The first message to the page of a run.
 
-use peristalsis_configuration::{Control, Ends, WaveformName};
+use peristalsis_configuration::{Control, Ends, PRESETS, WaveformName};
 use peristalsis_engine::Wall;
 use peristalsis_observe::MOST_ROWS;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
@@ -42,6 +42,9 @@ pub(crate) struct Welcome {
     /// wave is no sine that moves.
     newtonian: Vec<(f64, f64)>,
     pub(crate) driven: Driven,
+    /// The preset that differs in nothing but what sliders and the length of the tube may change, of whose kind published
+    /// branches are.
+    published: Option<&'static str>,
     /// The whole time series of a run that was computed before: (time in periods, J/Jmax).
     #[cfg_attr(test, ts(as = "Vec<(f64, Option<f64>)>"))]
     pub(crate) record: Vec<(f64, f64)>,
@@ -108,6 +111,48 @@ fn newtonian(ranges: &Ranges, configuration: &Configuration) -> Vec<(f64, f64)> 
         .collect()
 }
 
+/// The preset of this kind of tube and grains.
+fn published(configuration: &Configuration) -> Option<&'static str> {
+    let mut names = PRESETS.iter().map(|preset| preset.name);
+    names.find(|name| {
+        let preset = Configuration::from_preset(name, &[""; 0]).expect("presets are valid");
+        in_place_of(&preset, configuration) == preset
+    })
+}
+
+/// A configuration with its course, its length and what sliders change as in a preset.
+fn in_place_of(preset: &Configuration, configuration: &Configuration) -> Configuration {
+    let mut like = configuration.clone();
+    let waves = f64::from(like.tube.waves) / f64::from(preset.tube.waves);
+    // As many grains a wave, but for rounding.
+    if (like.grains.number as f64 - waves * preset.grains.number as f64).abs() <= 1.0 {
+        like.grains.number = preset.grains.number;
+    }
+    like.tube.waves = preset.tube.waves;
+    match (&mut like.drive.control, preset.drive.control) {
+        (Control::Strain { width }, Control::Strain { width: usual }) => *width = usual,
+        (
+            Control::Stress {
+                force_amplitude, ..
+            },
+            Control::Stress {
+                force_amplitude: usual,
+                ..
+            },
+        ) => *force_amplitude = usual,
+        _ => {}
+    }
+    like.drive.schedules.clear();
+    like.drive.strain_rate = preset.drive.strain_rate;
+    like.drive.direction = preset.drive.direction;
+    if let (Some(friction), Some(usual)) = (&mut like.contact.friction, &preset.contact.friction) {
+        friction.static_friction = usual.static_friction;
+        friction.kinetic_friction = usual.kinetic_friction;
+    }
+    (like.initial, like.run, like.observe) = (preset.initial, preset.run, preset.observe);
+    like
+}
+
 impl Welcome {
     /// The welcome at the start, without samples.
     pub(crate) fn of(
@@ -147,6 +192,7 @@ impl Welcome {
             newtonian: newtonian(&ranges, configuration),
             ranges,
             driven: timeline.driven(0.0),
+            published: published(configuration),
             record: Vec::new(),
             rows: Vec::new(),
             end: timeline.clock(end),
@@ -164,6 +210,47 @@ impl Welcome {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn published_branches_are_of_the_same_kind() {
+        let kind = |preset: &str, settings: &[&str]| {
+            published(&Configuration::from_preset(preset, settings).unwrap())
+        };
+        for name in ["frictionless", "frictionless-source", "frictionless-fine"] {
+            let driven = [
+                "tube.waves=3",
+                "drive.width=2.5",
+                "initial.state=jammed",
+                "run.seed=4",
+            ];
+            assert_eq!(kind(name, &driven), Some(name));
+        }
+        let driven = ["drive.force_amplitude=0.002", "contact.static_friction=0.2"];
+        let driven = [
+            &driven[..],
+            &["contact.kinetic_friction=0.1", "tube.waves=2"],
+        ]
+        .concat();
+        assert_eq!(kind("frictional", &driven), Some("frictional"));
+        for other in [
+            "contact.normal_damping=0.3",
+            "grains.volume_fraction=0.6",
+            "grains.number=0",
+            "tube.arrangement=\"random\"",
+            "contact.normal_stiffness=8",
+            "drive.waveform=\"bolus\"",
+            "drive.body_force=-0.003",
+        ] {
+            assert_eq!(kind("frictionless", &[other]), None, "{other}");
+        }
+        for other in [
+            "grains.number_density=0.3",
+            "wall.spring_stiffness=0.05",
+            "tube.radius=4",
+        ] {
+            assert_eq!(kind("frictional", &[other]), None, "{other}");
+        }
+    }
 
     #[test]
     fn a_newtonian_fluid_is_known_in_a_sine_that_moves() {
