@@ -299,7 +299,7 @@ pub(crate) struct ReproduceArguments {
     #[arg(long, conflicts_with = "quick")]
     pub(crate) full: bool,
     /// Begin from nothing and compute every run, in days.
-    #[arg(long, conflicts_with_all = ["quick", "import"])]
+    #[arg(long, conflicts_with_all = ["quick", "full", "import"])]
     pub(crate) fresh: bool,
     /// Begin from nothing and compute a few runs of everything, in some twenty minutes: shows each analysis, too few runs for most verdicts.
     #[arg(long)]

@@ -71,7 +71,7 @@ fn tube(estimate: &Estimate) -> Vec<String> {
     lines.extend([
         time(estimate),
         format!(
-            "steps             {} of {} t; a contact lasts about {} t, {} steps",
+            "steps             {} of {} t; the stiffest contact turns round in about {} t, {} steps",
             estimate.steps,
             significant(estimate.time_step, 4),
             significant(estimate.contact_time, 3),

@@ -100,6 +100,10 @@ const NO_ROWS: &str = "name tables of finished runs, or folders of them, with --
 
 /// The tables to begin from.
 fn tables(arguments: &ReproduceArguments) -> Result<Vec<PathBuf>, Failure> {
+    if let Some(path) = arguments.import.iter().find(|path| !path.exists()) {
+        let reason = format!("{}: no such file or folder", path.display());
+        return Err(Failure::usage(reason, NO_ROWS));
+    }
     if !arguments.import.is_empty() || arguments.quick || arguments.fresh {
         return Ok(arguments.import.clone());
     }

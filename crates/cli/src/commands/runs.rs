@@ -257,11 +257,10 @@ fn row(run: &Value) -> [String; 10] {
         folder,
         plain("grains"),
         drive("strain_rate"),
-        format!(
-            "{} {}",
-            drive("amplitude"),
-            run["drive"].as_str().unwrap_or_default()
-        ),
+        match run["drive"].as_str() {
+            Some("width") => format!("w = {} d", drive("amplitude")),
+            _ => format!("f^P = {}", drive("amplitude")),
+        },
         match number("periods_asked") {
             Some(_) => done("periods", "periods_asked", ""),
             None => done("time", "duration_asked", " t"),

@@ -81,6 +81,8 @@ class Loop:
         the level is too short for one.
     threshold : float
         J/Jmax whose crossing counts as a transition.
+    law : str
+        Law of contact, ``"linear"`` or ``"hertz"``: figures name its units.
 
     Examples
     --------
@@ -99,6 +101,7 @@ class Loop:
     flow_rate_ratio: Array
     flow_rate_ratio_error: Array
     threshold: float
+    law: Literal["linear", "hertz"] = "linear"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Loop) and all(map(alike, vars(self).values(), vars(other).values()))
@@ -180,7 +183,7 @@ def ramp(
             display.update(number + 1)
     means, errors = (np.array(column) for column in zip(*found))
     names = tuple(name for name, _ in course)
-    return Loop(parameter, names, np.array([value for _, value in course]), means, errors, threshold)
+    return Loop(parameter, names, np.array([value for _, value in course]), means, errors, threshold, simulation.configuration["contact.law"])
 
 
 def _late(simulation: Simulation, periods: float, settle: float) -> tuple[float, float]:

@@ -40,7 +40,12 @@ SEPARATOR = ",  "
 
 def unit(simulation: Simulation, name: str) -> str:
     """A unit of a table in symbols of the law of contact, as mathematical text without its dollars; others as they are."""
-    return _UNITS[simulation.configuration["contact.law"]].get(name, name.replace(" ", r"\,"))
+    return unit_of(simulation.configuration["contact.law"], name)
+
+
+def unit_of(law: str, name: str) -> str:
+    """The same by the name of the law."""
+    return _UNITS[law].get(name, name.replace(" ", r"\,"))
 
 
 def is_prescribed(simulation: Simulation) -> bool:

@@ -219,7 +219,7 @@ class Writer:
             self._frames.synchronize()
 
     def __repr__(self) -> str:
-        return f"<peristalsis.Writer: {self.path}, {self.frames} frames>"
+        return f"<peristalsis.Writer: {self.path}, {self.frames} frame{'' if self.frames == 1 else 's'}>"
 
 
 def span(name: str, given: float | str) -> tuple[float, bool]:

@@ -22,7 +22,7 @@ from ._simulation import Simulation
 from ._snapshot import snapshot
 from ._fit import set_legend, set_title
 from ._style import ALONG, COLOURS, DOUBLE_COLUMN, GREY, SINGLE_COLUMN, STYLE, axes, drawing
-from ._title import SEPARATOR, title, unit
+from ._title import SEPARATOR, title, unit, unit_of
 from .analysis import Collapse, CollapseResult, Survival
 
 from matplotlib.container import ErrorbarContainer
@@ -54,10 +54,11 @@ Array = npt.NDArray[np.float64]
 BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY = COLOURS
 _RATIO = r"flow rate, $J/J_{\mathrm{max}}$"
 _PHASE = r"position in the wave frame, $(z - ct)/\lambda$"
+_WIDTH = r"width of the bottleneck, $w/d$"
+#: Words, symbol and unit of what else a loop goes along.
 _PARAMETERS = {
-    "width": r"width of the bottleneck, $w/d$",
-    "strain_rate": r"strain rate, $\dot{\varepsilon}\,t$",
-    "force_amplitude": r"force amplitude, $f^{\mathrm{P}}/(m\,d/t^2)$",
+    "strain_rate": ("strain rate", r"\dot{\varepsilon}", "1/t"),
+    "force_amplitude": ("force amplitude", r"f^{\mathrm{P}}", "m d/t^2"),
 }
 #: Words and symbol of a column of the profile, its colour, and what it is drawn in where that is not its unit.
 _COLUMNS = {
@@ -339,7 +340,7 @@ def stationary_flow(
         new.errorbar(width, ratio, yerr=error, label=label, **{"fmt": _mark(known), **points})
         if radius is not None:
             _newtonian_curve(new, radius)
-        new.set(xlabel=_PARAMETERS["width"], ylabel=_RATIO)
+        new.set(xlabel=_WIDTH, ylabel=_RATIO)
         if new.get_legend_handles_labels()[0]:
             set_legend(new)
     return new
@@ -399,9 +400,17 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
                 new.axvline(crossing.value, color=colour, linestyle=":", linewidth=0.8)
         if radius is not None and loop.parameter == "width":
             _newtonian_curve(new, radius)
-        new.set(xlabel=_PARAMETERS.get(loop.parameter, loop.parameter), ylabel=_RATIO)
+        new.set(xlabel=_parameter(loop), ylabel=_RATIO)
         set_legend(new)
     return new
+
+
+def _parameter(loop: Loop) -> str:
+    """Words and symbol of what a loop goes along, in the units of its law of contact."""
+    if loop.parameter not in _PARAMETERS:
+        return _WIDTH
+    words, symbol, unit = _PARAMETERS[loop.parameter]
+    return f"{words}, ${symbol}/[{unit_of(getattr(loop, 'law', 'linear'), unit)}]$"
 
 
 def _arrow(ax: Axes, x: Array, y: Array, colour: str) -> None:

@@ -154,7 +154,7 @@ pub fn longest_time_step(configuration: &Configuration) -> f64 {
     contact_time(configuration) / STEPS_PER_CONTACT
 }
 
-/// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.
+/// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a linear contact lasts.
 pub(crate) fn contact_time(configuration: &Configuration) -> f64 {
     let model = configuration.contact;
     let diameter = configuration.grains.diameter_min;

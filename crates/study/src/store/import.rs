@@ -109,7 +109,12 @@ fn rows_of(path: &Path) -> Result<Vec<Row>> {
         FormatError::Io { source, .. } => StudyError::read(path)(source),
         other => StudyError::not_rows(path)(other.to_string()),
     })?;
-    if table.rows() == 0 {
+    // A column without values is of no kind, so that none holds identities.
+    let has_identities = table
+        .columns()
+        .iter()
+        .any(|column| column.name == "identity");
+    if table.rows() == 0 && has_identities {
         return Ok(Vec::new());
     }
     Row::all_of(&table).map_err(StudyError::not_rows(path))

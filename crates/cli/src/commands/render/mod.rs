@@ -182,7 +182,7 @@ fn trajectory(arguments: &RenderArguments, look: Look) -> Result<Option<PathBuf>
     };
     if look.needs_contacts() {
         return Err(Failure::usage(
-            "a GSD trajectory holds no forces of contacts, of which pressure is made",
+            "a GSD trajectory holds no forces of contacts, which --contacts draws and pressure is made of",
             "take --from state or --from start, another field, or no --contacts",
         ));
     }

@@ -258,18 +258,20 @@ fn line(seed: u64, outcome: &Outcome) -> String {
 
 /// New warnings of the replicates: of each key the first, with its seed and the number of other seeds that have one.
 fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
-    let mut seen: Vec<(&Warning, u64, usize)> = Vec::new();
+    let mut seen: Vec<(&Warning, Vec<u64>)> = Vec::new();
     for (seed, _, outcome) in worked {
         let warnings = outcome.iter().flat_map(|outcome| &outcome.summary.warnings);
         for warning in warnings.filter(|warning| !said.contains(warning)) {
             match seen.iter_mut().find(|(known, ..)| known.key == warning.key) {
-                Some((_, first, others)) => *others += usize::from(first != seed),
-                None => seen.push((warning, *seed, 0)),
+                Some((_, seeds)) => seeds.push(*seed),
+                None => seen.push((warning, vec![*seed])),
             }
         }
     }
-    let told = |(warning, seed, others): (&Warning, u64, usize)| {
-        let alike = match others {
+    let told = |(warning, mut seeds): (&Warning, Vec<u64>)| {
+        seeds.dedup();
+        let seed = seeds[0];
+        let alike = match seeds.len() - 1 {
             0 => String::new(),
             others => format!(" (and likewise with {others} more)"),
         };

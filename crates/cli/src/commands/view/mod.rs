@@ -13,7 +13,7 @@ use peristalsis_viewer::{Options, Recording, Viewer};
 
 use crate::arguments::{ConfigurationArguments, ViewArguments};
 use crate::commands::run::threads_of;
-use crate::commands::{packing, print, say};
+use crate::commands::{counted, packing, print, say};
 use crate::failure::Failure;
 use crate::sources::{self, known_presets};
 use crate::stop::Stop;
@@ -117,7 +117,8 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
     if lost > 0 {
         let whole = recording.frames();
         say(&format!(
-            "the trajectory was cut short: {whole} whole frames, {lost} lost"
+            "the trajectory was cut short: {} left, {lost} lost",
+            counted(whole, "whole frame")
         ));
     }
     Ok(Viewer::play(recording, name(folder), port)?)

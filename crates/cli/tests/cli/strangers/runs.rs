@@ -446,7 +446,7 @@ fn runs_tell_what_a_schedule_leads_and_lengths_of_few_digits() {
         "run SMALL {samples} drive.schedule={course} --out led"
     ));
     let listed = place.does("runs led");
-    listed.shows(&["2.5 to 2.9 width", "0.538 of 0.538"]);
+    listed.shows(&["w = 2.5 to 2.9 d", "0.538 of 0.538"]);
     let json = place.does("runs led --json").json();
     assert_eq!(json[0]["amplitude_led"], serde_json::json!([2.5, 2.9]));
     assert_eq!(json[0]["strain_rate_led"], Value::Null);

@@ -37,10 +37,12 @@ fn a_bracket_is_told_as_one() {
 fn files_that_cannot_be_imported_are_named_as_bad_input() {
     let place = finished();
     place.write("junk.csv", "no rows\n1\n");
+    place.write("header.csv", "no rows\n");
     place.write("junk.parquet", "junk");
     place.write("junk.tar", "junk");
     for name in [
         "junk.csv",
+        "header.csv",
         "junk.parquet",
         "junk.tar",
         "none.csv",
