@@ -485,7 +485,8 @@ class PumpingSummary(TypedDict):
     body_force: float
     """force over mass on the grains along the wave, gravity's part with it; negative is back pressure [d/t^2]"""
     pressure_rise: float
-    """pressure rise over a wavelength that the body force stands for [m/(d t^2)]"""
+    """pressure rise over a wavelength that the body force stands for, with the mean mass of the distribution of
+    sizes [m/(d t^2)]"""
     useful_power: float | None
     """late mean power of the flow against the body force, grains inside [m d^2/t^3]"""
     useful_power_error: float | None
@@ -637,8 +638,8 @@ class Summary(_Rare):
     transition_threshold: float
     """J/Jmax whose crossing counts as the transition"""
     flow_rate_ratio: float
-    """late mean of J/Jmax, grains inside; of J over that of Jmax where the wave changes its speed or no grain is
-    inside for a while"""
+    """late mean of J/Jmax of the grains inside; where the wave changes its speed or no grain is inside for a while,
+    late mean of J over that of Jmax"""
     flow_rate_ratio_error: float
     """its standard error"""
     flow_rate_ratio_drift: float
