@@ -264,7 +264,8 @@ fn of_run(error: &RunError) -> Advice {
         ),
         RunError::Format(FormatError::NotATrajectory { .. }) => wrong(FOREIGN_FRAMES),
         RunError::Format(error) if is_closed(error) => wrong(
-            "make the folder writable for this user, or begin in another: peristalsis run DIR/config.toml --out OTHER",
+            "make the folder writable for this user, or name another with --out (a run begins there anew: peristalsis run \
+             DIR/config.toml --out OTHER)",
         ),
         RunError::TooShort { .. } => wrong(
             "ask for at least as much with --periods or --duration, or begin anew in another folder: peristalsis run \
@@ -303,6 +304,9 @@ fn of_run(error: &RunError) -> Advice {
         | RunError::Configuration(_)
         | RunError::NotPlaced
         | RunError::Engine(EngineError::InvalidParameter { .. }) => (BAD_INPUT, None),
+        RunError::Format(FormatError::Io { .. }) => failed(
+            "make room on the disk, and call again; a run without a saved state begins anew in another folder (--out)",
+        ),
         _ => (FAILED, error.against_divergence().map(str::to_owned)),
     }
 }

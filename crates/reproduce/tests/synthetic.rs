@@ -548,7 +548,7 @@ fn denser_grains_are_told_from_both_starts() {
     evidence.add_table("dense-jams", dense.table()).unwrap();
     let found = examine("F9", &evidence);
     let told = found.paragraphs.last().unwrap();
-    assert_says(told, "depends on the start at *ρ* = 0.3, not at 0.45.");
+    assert_says(told, "depends on the start at *ρ* = 0.3, not at 0.45, most");
     assert_says(told, "with 5.0 contacts a grain");
 }
 

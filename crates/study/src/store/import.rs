@@ -44,13 +44,15 @@ impl Store {
         let mut index = self.index()?;
         let known = index.entries()?;
         let is_new = |row: &&Row| {
-            let entry = known.get(&row.identity());
-            entry.is_none_or(|entry| entry.state != State::Done)
+            let identity = row.identity();
+            let is_first = std::ptr::eq(first_of[&identity], *row);
+            let entry = known.get(&identity);
+            is_first && entry.is_none_or(|entry| entry.state != State::Done)
         };
         // These alone are copied: `scan` makes the index anew from the copies, and finds each run in one of them.
         let new: Vec<&Row> = rows.iter().filter(is_new).collect();
         let packed = Packed {
-            runs: rows.len(),
+            runs: first_of.len(),
             taken: new.len(),
             ..Packed::default()
         };

@@ -144,6 +144,10 @@ fn in_si(run: &Run, summary: &Summary) -> String {
     ) else {
         return String::new();
     };
+    // Before the first sample nothing is known.
+    if !power.is_finite() {
+        return String::new();
+    }
     let torque = summary.wall_torque.map(|(torque, _)| torque);
     let torque = torque.and_then(|torque| summary.in_si(torque, Units::energy));
     let torque = torque.map(|it| format!(" (torque {} N m at a wave a turn)", number(it)));
