@@ -229,9 +229,12 @@ fn differing(report: &Report) -> Option<String> {
         let first = columns.first()?;
         let [published, computed] = &first.values;
         let column = &first.column;
-        text.push_str(&format!(
-            "\n  study {study}, run {identity}, {column}: {published} in the table, {computed} computed again"
-        ));
+        text.push_str(&match column.as_str() {
+            "status" => format!("\n  study {study}, run {identity}: computed again it {computed}"),
+            _ => format!(
+                "\n  study {study}, run {identity}, {column}: {published} in the table, {computed} computed again"
+            ),
+        });
         if columns.len() > 1 {
             text.push_str(&format!(" (and {} columns more)", columns.len() - 1));
         }
