@@ -1,4 +1,4 @@
-import type { Results } from "./results";
+import { FLUCTUATION, type Results } from "./results";
 
 /** Periods before the transition at which a run is shown. */
 const JUMP = 5;
@@ -9,7 +9,7 @@ export function firstQuantity({ quantities, study }: Results): string {
   const about: [RegExp, string][] = [
     [/transition time|lifetime|time until/, "transition_time"],
     [/pumping/, "pumping_efficiency"],
-    [/fluctuation/, "flow_rate_ratio_variance"],
+    [/fluctuation/, FLUCTUATION.name],
     [/discharge|silo|outlet/, "discharge_rate"],
   ];
   for (const [words, name] of about) if (words.test(title) && quantities.some((it) => it.name === name)) return name;

@@ -56,6 +56,9 @@ const QUANTITIES = [
 /** Columns that say what tube it is: no line joins tubes unlike each other, unless one of these goes across. */
 export const TUBE = ["tube.radius", "tube.wavelength", "tube.arrangement", "tube.spheres_per_ring", "tube.rings_per_wave"];
 
+/** The fluctuation across an ensemble, of the late means of its runs; and how many runs tell of one. */
+export const FLUCTUATION = { name: "variance_over_runs", label: "variance of J/Jmax over runs", of: "flow_rate_ratio", least: 5 };
+
 /** Columns of numbers that are neither. */
 const NEITHER = new Set(["replicate", "seed", "grains", "transition_threshold", "steps"]);
 
@@ -86,6 +89,10 @@ export class Results {
     this.quantities = measured
       .map(({ name, label, description }) => ({ name, label, description }))
       .sort((one, other) => rank(one.name) - rank(other.name));
+    const { name, label, of, least } = FLUCTUATION;
+    const replicates = Math.max(0, ...this.all().map((row) => this.number("replicate", row) + 1).filter(Number.isFinite));
+    if (replicates >= least && this.columns.has(of))
+      this.quantities.push({ name, label, description: `variance of the late means of J/Jmax of runs that differ in their random numbers alone, at least ${least}; jackknife error` });
     const starts = new Set((this.columns.get("initial_state") ?? []).map(String));
     this.starts = [...starts].sort().reverse();
   }
@@ -152,6 +159,7 @@ export class Results {
   }
 
   private point(rows: number[], quantity: string, x: string, other: string | null): Point {
+    if (quantity === FLUCTUATION.name) return this.fluctuation(rows, x, other);
     const isTime = quantity.startsWith("transition_time");
     // A run that ended before its transition says that its time is longer than it went.
     const ended = rows.filter((row) => isTime && Number.isNaN(this.number(quantity, row)));
@@ -176,6 +184,16 @@ export class Results {
     };
   }
 
+  /** The variance over the runs of a place, in the point of their mean. */
+  private fluctuation(rows: number[], x: string, other: string | null): Point {
+    const point = this.point(rows, FLUCTUATION.of, x, other);
+    const flows = rows.map((row) => this.number(FLUCTUATION.of, row)).filter(Number.isFinite);
+    const enough = flows.length >= FLUCTUATION.least;
+    const without = flows.map((_, left) => variance(flows.filter((_, k) => k !== left)));
+    const error = Math.sqrt(((flows.length - 1) ** 2 / flows.length) * variance(without));
+    return { ...point, value: enough ? variance(flows) : NaN, error };
+  }
+
   /** Of the rows of a point, the one that is nearest to what the point shows, of those that can be watched. */
   typical(point: Point, quantity: string): number | null {
     const away = (row: number) => {
@@ -185,4 +203,10 @@ export class Results {
     const watchable = point.rows.filter((row) => this.study.runs[row] !== null);
     return watchable.toSorted((one, other) => away(one) - away(other)).at(0) ?? null;
   }
+}
+
+/** Sample variance. */
+function variance(values: number[]): number {
+  const mean = values.reduce((sum, value) => sum + value, 0) / values.length;
+  return values.reduce((sum, value) => sum + (value - mean) ** 2, 0) / (values.length - 1);
 }
