@@ -87,7 +87,7 @@ class Page {
 
   private told(message: Told): void {
     if (message.type === "welcome") this.welcome(message);
-    else if (message.type === "saved") showSaved(message, this.film.rows);
+    else if (message.type === "saved") showSaved(message);
     else if (message.type === "missing") this.missing(message.number, message.message);
     else if (message.type === "course") this.address.take(message);
     else {

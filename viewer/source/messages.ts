@@ -156,6 +156,8 @@ export type Notice = {
   command: string,
   /** The configuration. */
   toml: string,
+  /** Whether it makes the same run from the start: a change of friction does not stand in it. */
+  repeats: boolean,
   /** The checkpoint in base64, where the page is to keep it. */
   state: string | null,
   /** Time in periods. */

@@ -120,7 +120,8 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   // Of the clear tube, inside the spheres of the wall.
   const clear = (bin: number) => radius[Math.round(middle(bin) * (radius.length - 1))] - 0.5 * tube.wall_sphere_diameter;
   const each = (tube.wavelength / bins) * tube.waves * frames.length * Math.PI;
-  const fractions = Array.from(volume, (sum, bin) => sum / (each * clear(bin) ** 2));
+  // Where the throat is all but closed the part of its volume says nothing.
+  const fractions = Array.from(volume, (sum, bin) => (clear(bin) > 0.25 ? sum / (each * clear(bin) ** 2) : NaN));
   const drawn = [...means, ...fractions].filter(Number.isFinite);
   const [least, most] = [Math.min(-0.25, ...drawn), Math.max(1.3, ...drawn)];
   const area = `color-mix(in srgb, ${colours.wall} 20%, transparent)`;

@@ -90,8 +90,8 @@ export class Results {
       .map(({ name, label, description }) => ({ name, label, description }))
       .sort((one, other) => rank(one.name) - rank(other.name));
     const { name, label, of, least } = FLUCTUATION;
-    const replicates = Math.max(0, ...this.all().map((row) => this.number("replicate", row) + 1).filter(Number.isFinite));
-    if (replicates >= least && this.columns.has(of))
+    const isLarge = this.all().some((row) => this.number("replicate", row) + 1 >= least);
+    if (isLarge && this.columns.has(of))
       this.quantities.push({ name, label, description: `variance of the late means of J/Jmax of runs that differ in their random numbers alone, at least ${least}; jackknife error` });
     const starts = new Set((this.columns.get("initial_state") ?? []).map(String));
     this.starts = [...starts].sort().reverse();
@@ -196,9 +196,12 @@ export class Results {
 
   /** Of the rows of a point, the one that is nearest to what the point shows, of those that can be watched. */
   typical(point: Point, quantity: string): number | null {
+    const isMean = quantity !== FLUCTUATION.name;
+    const name = isMean ? quantity : FLUCTUATION.of;
+    const middle = isMean ? point.value : this.point(point.rows, name, name, null).value;
     const away = (row: number) => {
-      const value = this.number(quantity, row);
-      return Number.isNaN(value) ? Infinity : Math.abs(value - point.value);
+      const value = this.number(name, row);
+      return Number.isNaN(value) ? Number.MAX_VALUE : Math.abs(value - middle);
     };
     const watchable = point.rows.filter((row) => this.study.runs[row] !== null);
     return watchable.toSorted((one, other) => away(one) - away(other)).at(0) ?? null;

@@ -1,15 +1,13 @@
 import { element } from "./page";
-import type { FilmRow } from "./film";
 import type { Saved } from "./protocol";
 
-/** Offers a saved state of a tube whose history is told by rows. */
-export function showSaved(saved: Saved, rows: FilmRow[]): void {
-  const isOfOneFriction = new Set(rows.map(({ friction }) => friction).filter((it) => it !== null)).size < 2;
+/** Offers a saved state. */
+export function showSaved(saved: Saved): void {
   element("saved-command").textContent = saved.command;
   element("saved-folder").textContent = saved.folder
     ? `${saved.folder} holds the checkpoint and its configuration.`
     : "Put both files into a folder, under these names.";
-  if (!isOfOneFriction) element("saved-folder").textContent += " The configuration tells the last friction only: from the start it makes another run.";
+  if (!saved.repeats) element("saved-folder").textContent += " The configuration tells the last friction only: from the start it makes another run.";
   const name = saved.folder?.split("/").at(-1);
   offer("saved-toml", new Blob([saved.toml], { type: "application/toml" }), name ? `${name}.toml` : "config.toml");
   const { state } = saved;

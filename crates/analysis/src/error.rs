@@ -136,9 +136,7 @@ pub enum Error {
         found: usize,
     },
     /// Curves that share too little of the abscissa to be compared.
-    #[error(
-        "at most {:.0} % of the points lie on another curve's extent: {:.0} % must; begin nearer to the collapse", 100.0 * found, 100.0 * needed
-    )]
+    #[error("{}", no_overlap(*needed, *found))]
     NoOverlap {
         /// Least fraction accepted.
         needed: f64,
@@ -190,6 +188,18 @@ pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
         Some((index, value)) => Err(Error::NonFinite { index, value }),
         None => Ok(series),
     }
+}
+
+/// Why curves cannot be compared.
+fn no_overlap(needed: f64, found: f64) -> String {
+    if needed == 0.0 {
+        return "no point lies within the extent of another curve".to_owned();
+    }
+    format!(
+        "no search found more than a part {} of the points within the extent of another curve, and at least {needed} must be: \
+         begin nearer to the collapse",
+        crate::number::rounded(found, 3)
+    )
 }
 
 /// Refuses fewer of `what` than `needed`.

@@ -228,6 +228,14 @@ fn is_closed(error: &FormatError) -> bool {
     matches!(error, FormatError::Io { source, .. } if peristalsis_formats::is_closed(source))
 }
 
+/// Whether there is no room for what is to be written.
+fn is_full(kind: ErrorKind) -> bool {
+    matches!(
+        kind,
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge
+    )
+}
+
 /// What to do about results that could not all be written.
 fn unwritten(folder: &RunFolder) -> String {
     let path = quoted(folder.path());
@@ -304,7 +312,7 @@ fn of_run(error: &RunError) -> Advice {
         | RunError::Configuration(_)
         | RunError::NotPlaced
         | RunError::Engine(EngineError::InvalidParameter { .. }) => (BAD_INPUT, None),
-        RunError::Format(FormatError::Io { .. }) => failed(
+        RunError::Format(FormatError::Io { source, .. }) if is_full(source.kind()) => failed(
             "make room on the disk, and call again; a run without a saved state begins anew in another folder (--out)",
         ),
         _ => (FAILED, error.against_divergence().map(str::to_owned)),

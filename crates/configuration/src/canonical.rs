@@ -42,7 +42,7 @@ impl Configuration {
             "# The configuration of a run with every value resolved. It can be run again as it stands.\n",
         );
         let mut table = String::new();
-        for entry in self.entries() {
+        for entry in self.entries(self.initial_wave_speed()) {
             if entry.table != table {
                 if table == "drive" {
                     for schedule in &self.drive.schedules {
@@ -76,7 +76,12 @@ impl Configuration {
 
     fn hash(&self, heading: &str, counts: impl Fn(&Entry) -> bool) -> [u8; 32] {
         let mut text = heading.to_owned();
-        for entry in self.entries().iter().filter(|entry| counts(entry)) {
+        // The usual velocity of jammed grains was that of drive.strain_rate once, whatever the schedule.
+        for entry in self
+            .entries(self.wave_speed())
+            .iter()
+            .filter(|entry| counts(entry))
+        {
             let (path, value) = (entry.path(), bits(&entry.value));
             text += &format!("{path}={value}\n");
         }
@@ -94,8 +99,8 @@ impl Configuration {
     /// Every key with its resolved value, in the order of the types that hold them.
     ///
     /// What is not there is not listed: neither friction, units, an inlet, gravity or a body force that the run does without, nor a staggered
-    /// arrangement, nor an initial velocity that the initial state has of itself, and of alternatives only the first.
-    fn entries(&self) -> Vec<Entry> {
+    /// arrangement, nor an initial velocity that the initial state has of itself in a wave of this speed, and of alternatives only the first.
+    fn entries(&self, wave_speed: f64) -> Vec<Entry> {
         let mut tables =
             toml::Table::try_from(self).expect("a configuration consists of what TOML can hold");
         if self.contact.friction.is_none() {
@@ -120,7 +125,7 @@ impl Configuration {
                 list(table, keys, &mut entries);
             }
         }
-        let natural = self.natural_axial_velocity(self.wave_speed());
+        let natural = self.natural_axial_velocity(wave_speed);
         entries.retain(|entry| match entry.path().as_str() {
             "body.gravity" => self.body != Body::default(),
             "drive.body_force" => self.drive.body_force != 0.0,

@@ -275,7 +275,7 @@ pub struct Initial {
     /// How the grains stand at t = 0: spread over the tube at rest, settled under gravity, or gathered in the bellies and
     /// moving with the wave. Only a program can place them otherwise.
     pub state: InitialState,
-    /// Velocity of every grain along the wave at t = 0. Default: 0 from rest, the wave's speed from jammed.
+    /// Velocity of every grain along the wave at t = 0. Default: 0 from rest, the wave's speed at t = 0 from jammed.
     #[schemars(extend("x-unit" = "d t^-1", "minimum" = -1e9, "maximum" = 1e9, "default" = null))]
     pub axial_velocity: f64,
     /// Granular temperature at t = 0: besides the velocity along the wave every component of a grain's velocity is drawn

@@ -299,6 +299,23 @@ fn verdicts_follow_the_law_of_the_tube() {
     }
 }
 
+/// Where no jam gives way at one strain rate, those of the others do not decide.
+#[test]
+fn jams_give_way_at_each_strain_rate_or_the_verdict_is_open() {
+    let lasting = Tube {
+        critical: 0.0,
+        jumps_from: 0.0,
+        ..SOURCE
+    };
+    let mut rows = SOURCE.branches(&RATES[1..]);
+    rows.extend(&lasting.branches(&RATES[..1]));
+    let mut evidence = SOURCE.evidence(FRICTIONLESS);
+    evidence
+        .add_table("elastic-branches", rows.table())
+        .unwrap();
+    assert_verdict("S2", &evidence, Verdict::Open);
+}
+
 #[test]
 fn too_little_of_anything_leaves_the_verdict_open() {
     let thin: [Change; 3] = [

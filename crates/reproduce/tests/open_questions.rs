@@ -86,6 +86,29 @@ fn back_flow_is_traced_to_friction_or_to_the_wall() {
         finding.summary
     );
 
+    // A point that still drifts is left out, and named.
+    let at =
+        |is: bool| by_friction.only(|_, numbers| (numbers["contact.static_friction"] == 0.2) == is);
+    let mut drifting = at(true);
+    drifting.set("flow_rate_ratio_drift", 0.1);
+    drifting.extend(&at(false));
+    let finding = examine("Q6", &[("back-flow", &drifting)]);
+    assert!(
+        finding
+            .weaknesses
+            .iter()
+            .any(|it| it.contains("*μ*_{s} = 0.2,")),
+        "{:?}",
+        finding.weaknesses
+    );
+    assert_eq!(
+        finding.tables[0].rows.len(),
+        examine("Q6", &[("back-flow", &by_friction)]).tables[0]
+            .rows
+            .len()
+            - 1
+    );
+
     let few = back_flow(|_, _| -0.05, 1);
     assert_eq!(examine("Q6", &[("back-flow", &few)]).verdict, Verdict::Open);
 }

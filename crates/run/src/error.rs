@@ -93,7 +93,7 @@ pub enum RunError {
         help: String,
     },
     /// A folder lacks a part of a run.
-    #[error("{} holds no run: {reason}", folder.display())]
+    #[error("{} holds no run that is whole: {reason}", folder.display())]
     NoRun {
         /// The folder.
         folder: PathBuf,

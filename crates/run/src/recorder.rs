@@ -1,7 +1,7 @@
 //! The measurements of a run so far.
 
 use peristalsis_analysis::{Direction, Transition, TransitionDetector};
-use peristalsis_configuration::Configuration;
+use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
 use peristalsis_observe::{
     AxialDispersion, ContactForces, Observer, Sample, Series, View, WallFault, WaveByWave,
@@ -254,7 +254,7 @@ impl Recorder {
 }
 
 /// J/Jmax at the start, <v_z>/c along the wave, with its speed c at the start: 0 at rest, 1 of grains that move with the
-/// wave; 0 of none, or where the wave stands.
+/// wave; 0 of none. Where the wave stands at first they are at rest: 0, or 1 of a jammed start.
 fn initial_ratio(configuration: &Configuration, simulation: &Simulation) -> f64 {
     let speed = configuration.heading() * configuration.initial_wave_speed();
     let bodies = simulation.bodies();
@@ -262,7 +262,12 @@ fn initial_ratio(configuration: &Configuration, simulation: &Simulation) -> f64 
     let (sum, number) = present.fold((0.0, 0.0), |(sum, number), grain| {
         (sum + bodies.velocity[grain].z / speed, number + 1.0)
     });
-    if number > 0.0 && speed != 0.0 {
+    if speed == 0.0 {
+        match configuration.initial.state {
+            InitialState::Jammed => 1.0,
+            _ => 0.0,
+        }
+    } else if number > 0.0 {
         sum / number
     } else {
         0.0

@@ -117,6 +117,8 @@ pub(crate) enum Notice {
         command: String,
         /// The configuration.
         toml: String,
+        /// Whether it makes the same run from the start: a change of friction does not stand in it.
+        repeats: bool,
         /// The checkpoint in base64, where the page is to keep it.
         state: Option<String>,
         /// Time in periods.

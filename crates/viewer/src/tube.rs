@@ -348,6 +348,7 @@ impl Tube {
             command: format!("peristalsis run --resume {place}"),
             folder,
             toml,
+            repeats: (self.course.turns().iter()).all(|turn| turn.parameter != Steered::Friction),
             state,
             period: self.clock_now(),
         };

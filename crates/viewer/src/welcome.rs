@@ -124,8 +124,9 @@ fn published(configuration: &Configuration) -> Option<&'static str> {
 fn in_place_of(preset: &Configuration, configuration: &Configuration) -> Configuration {
     let mut like = configuration.clone();
     let waves = f64::from(like.tube.waves) / f64::from(preset.tube.waves);
-    // As many grains a wave, but for rounding.
-    if (like.grains.number as f64 - waves * preset.grains.number as f64).abs() <= 1.0 {
+    // As many grains a wave, but that both numbers are rounded.
+    let apart = like.grains.number as f64 - waves * preset.grains.number as f64;
+    if apart.abs() <= 0.5 * (1.0 + waves) {
         like.grains.number = preset.grains.number;
     }
     like.tube.waves = preset.tube.waves;
@@ -146,8 +147,12 @@ fn in_place_of(preset: &Configuration, configuration: &Configuration) -> Configu
     like.drive.strain_rate = preset.drive.strain_rate;
     like.drive.direction = preset.drive.direction;
     if let (Some(friction), Some(usual)) = (&mut like.contact.friction, &preset.contact.friction) {
-        friction.static_friction = usual.static_friction;
-        friction.kinetic_friction = usual.kinetic_friction;
+        // A slider keeps their ratio.
+        let own = friction.kinetic_friction * usual.static_friction;
+        if (own - friction.static_friction * usual.kinetic_friction).abs() < 1e-9 {
+            friction.static_friction = usual.static_friction;
+            friction.kinetic_friction = usual.kinetic_friction;
+        }
     }
     (like.initial, like.run, like.observe) = (preset.initial, preset.run, preset.observe);
     like
@@ -228,7 +233,7 @@ mod tests {
         let driven = ["drive.force_amplitude=0.002", "contact.static_friction=0.2"];
         let driven = [
             &driven[..],
-            &["contact.kinetic_friction=0.1", "tube.waves=2"],
+            &["contact.kinetic_friction=0.16", "tube.waves=2"],
         ]
         .concat();
         assert_eq!(kind("frictional", &driven), Some("frictional"));
@@ -245,6 +250,7 @@ mod tests {
         }
         for other in [
             "grains.number_density=0.3",
+            "contact.static_friction=1",
             "wall.spring_stiffness=0.05",
             "tube.radius=4",
         ] {

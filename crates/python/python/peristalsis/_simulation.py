@@ -86,7 +86,7 @@ class Simulation(Made):
             Wavelengths that the wave is to run, as `period` counts them, also where a schedule changes its speed. Each takes
             T = 1/strain_rate where that is constant.
         duration : float, optional
-            Time [t] instead of periods.
+            Time [t] instead of periods; both are rounded to the nearest step.
         progress : bool or "logging"
             Show how far it is: by tqdm where that is installed, otherwise on standard error; or tell the logger
             ``peristalsis`` every ten seconds.

@@ -83,6 +83,8 @@ class Loop(Protocol):
 
     @property
     def parameter(self) -> str: ...
+    @property
+    def law(self) -> str: ...
     def table(self) -> Any: ...
 
 
@@ -409,8 +411,8 @@ def _parameter(loop: Loop) -> str:
     """Words and symbol of what a loop goes along, in the units of its law of contact."""
     if loop.parameter not in _PARAMETERS:
         return _WIDTH
-    words, symbol, unit = _PARAMETERS[loop.parameter]
-    return f"{words}, ${symbol}/[{unit_of(getattr(loop, 'law', 'linear'), unit)}]$"
+    words, symbol, per = _PARAMETERS[loop.parameter]
+    return f"{words}, ${symbol}/[{unit_of(loop.law, per)}]$"
 
 
 def _arrow(ax: Axes, x: Array, y: Array, colour: str) -> None:

@@ -138,6 +138,7 @@ class Loop:
     """A ramp as `Simulation.ramp` returns it."""
 
     parameter = "width"
+    law = "linear"
 
     def table(self) -> dict[str, object]:
         width = np.linspace(2.4, 3.0, 5)
@@ -153,6 +154,11 @@ def test_a_loop_is_drawn_with_both_ways_and_their_errors() -> None:
     """Wanted: plot.hysteresis."""
     axes = plot.hysteresis(Loop(), radius=1.5)
     assert axes.get_xlabel() == "width of the bottleneck, $w/d$"
+    pressed = Loop()
+    pressed.parameter = "force_amplitude"
+    assert plot.hysteresis(pressed).get_xlabel().endswith("/[kd]$")
+    pressed.law = "hertz"
+    assert plot.hysteresis(pressed).get_xlabel().endswith("/[Yd^2]$")
     legend = axes.get_legend()
     assert legend is not None
     assert {text.get_text() for text in legend.get_texts()} == {"there, upwards", "back, downwards", "Newtonian fluid"}

@@ -97,7 +97,7 @@ impl Sampled<'_> {
 #[derive(Default)]
 struct Samples<'a> {
     steady: Vec<Sampled<'a>>,
-    /// Where most runs still drift.
+    /// Where more than half of the runs still drift.
     drifting: Vec<Point>,
 }
 
@@ -105,16 +105,9 @@ impl<'a> Samples<'a> {
     fn of(results: &'a StudyResults) -> Self {
         let mut samples = Self::default();
         for (point, all) in grouped(results.rows(), Point::of) {
-            let rows: Vec<Row<'a>> = all
-                .iter()
-                .filter(|row| row.is_stationary())
-                .copied()
-                .collect();
-            match mean(&rows, "flow_rate_ratio") {
-                Some(flow) if 2 * rows.len() > all.len() => {
-                    samples.steady.push(Sampled { point, rows, flow });
-                }
-                _ => samples.drifting.push(point),
+            match stationary(&all) {
+                Some((rows, flow)) => samples.steady.push(Sampled { point, rows, flow }),
+                None => samples.drifting.push(point),
             }
         }
         samples

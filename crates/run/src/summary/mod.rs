@@ -291,6 +291,11 @@ impl Summary {
         self.late_intervals as f64 / f64::from(self.configuration.observe.samples_per_period)
     }
 
+    /// Length of the run in periods of `drive.strain_rate`.
+    pub fn periods_of_drive(&self) -> f64 {
+        self.time * self.configuration.drive.strain_rate
+    }
+
     /// Variance of the late averages of J/Jmax over a period each; NaN below two whole late periods.
     fn flow_rate_ratio_variance(&self) -> f64 {
         variance(&self.late_averages)

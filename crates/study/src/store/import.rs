@@ -15,7 +15,7 @@ use crate::plan::PlannedRun;
 use crate::row::Row;
 
 impl Store {
-    /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many it has, and how many of
+    /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many runs it has, and how many of
     /// them were taken.
     ///
     /// A run that is finished here stays as it is, and its row is not taken. The others are copied into the store. The table

@@ -273,7 +273,7 @@ fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
         let seed = seeds[0];
         let alike = match seeds.len() - 1 {
             0 => String::new(),
-            others => format!(" (and likewise with {others} more)"),
+            others => format!(" (a warning of this key with {others} more)"),
         };
         warning.clone().under(&format!("with seed {seed}{alike}"))
     };

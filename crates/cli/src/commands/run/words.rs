@@ -68,19 +68,29 @@ fn transition(run: &Run, summary: &Summary) -> String {
             "too short to tell of a transition: {} periods, and {CONFIRMATION_PERIODS} whole ones in a row confirm it",
             periods(summary.time)
         ),
+        None if !has_three_averages(run) => format!(
+            "no transition can be told: J/Jmax is not known in {CONFIRMATION_PERIODS} periods in a row"
+        ),
         None => format!("no transition within {} periods", periods(summary.time)),
     }
 }
 
+/// Whether there is an average of J/Jmax in so many periods in a row as tell of a transition.
+fn has_three_averages(run: &Run) -> bool {
+    let averages = run.recorder().averages();
+    let mut in_a_row = averages.windows(CONFIRMATION_PERIODS as usize);
+    in_a_row.any(|some| some.iter().all(|average| average.is_finite()))
+}
+
 /// Whether a run has fewer periods than tell of a transition.
 pub(super) fn is_too_short(summary: &Summary) -> bool {
-    summary.periods + 1e-6 < f64::from(CONFIRMATION_PERIODS)
+    summary.periods_of_drive() + 1e-6 < f64::from(CONFIRMATION_PERIODS)
 }
 
 /// The late flow beside that of a Newtonian fluid, and whether it still changes.
 fn flow(run: &Run, summary: &Summary) -> String {
     let configuration = run.configuration();
-    let late = rounded(100.0 * configuration.observe.late_fraction, 2);
+    let late = rounded(100.0 * configuration.observe.late_fraction, 3);
     let (ratio, error) = summary.flow_rate_ratio;
     let said = measured(summary.flow_rate_ratio);
     let mut flow = match known_error(ratio, error) {

@@ -127,16 +127,16 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
     };
     let mut is_whole = true;
     for file in &arguments.files {
-        let (packed, what) = match is_archive(file) {
-            true => (store.import_archive(file)?, "run"),
-            false => (store.import_table(file)?, "row"),
+        let packed = match is_archive(file) {
+            true => store.import_archive(file)?,
+            false => store.import_table(file)?,
         };
         is_whole &= packed.refused.is_empty();
         for (identity, reason) in &packed.refused {
             let file = file.display();
             say(&format!("run {identity} of {file} is left out: {reason}"));
         }
-        let (taken, all, file) = (packed.taken, counted(packed.runs, what), file.display());
+        let (taken, all, file) = (packed.taken, counted(packed.runs, "run"), file.display());
         print(&format!("{taken} of {all} taken from {file}\n"))?;
     }
     Ok(code_of(is_whole))

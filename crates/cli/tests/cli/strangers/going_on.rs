@@ -148,7 +148,10 @@ fn figures_of_no_run_say_what_is_missing() {
     let place = Place::new();
     std::fs::create_dir(place.path("empty")).unwrap();
     for folder in ["empty", "none"] {
-        let parts = ["holds no run: config.toml", "peristalsis runs DIR"];
+        let parts = [
+            "holds no run that is whole: config.toml",
+            "peristalsis runs DIR",
+        ];
         place.refuses(&format!("figures {folder}"), &parts);
     }
 }

@@ -280,10 +280,10 @@ fn finished_runs_travel_by_table_and_by_archive() {
     assert!(tables(&place, "packed") == before);
     place
         .does("study import rows store-tables/tested.csv --study study.toml")
-        .shows(&["4 of 4 rows taken"]);
+        .shows(&["4 of 4 runs taken"]);
     place
         .does("study import rows store-tables/tested.csv")
-        .shows(&["0 of 4 rows taken"]);
+        .shows(&["0 of 4 runs taken"]);
     place.does("study run study.toml --store rows");
     assert!(tables(&place, "rows")[..2] == before[..2]);
     place.call("study import rows study.toml").expect_code(2);
