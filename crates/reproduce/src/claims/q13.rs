@@ -47,7 +47,7 @@ impl Place {
             flow,
             moved: Uncertain::normal(part * flow.value, part * flow.error),
             overlap: most("largest_overlap"),
-            pressed: mean(rows, "pressed").map_or(0.0, |part| part.value),
+            pressed: most("pressed"),
         })
     }
 

@@ -194,7 +194,11 @@ impl Summary {
             throat: LocalFlow::throat(&profile),
             belly: LocalFlow::belly(&profile),
             contact_force: ForceOfContacts::of(late, recorder.contact_forces()),
-            residence_time: residence_time(late),
+            // In an open tube grains fill a part of the length that J is of: transit times tell how long they take.
+            residence_time: match simulation.ends() {
+                Some(_) => None,
+                None => residence_time(late),
+            },
             axial_dispersion: axial_dispersion(late, recorder.dispersion()),
             late: late.to_vec(),
             packing: *run.packing(),

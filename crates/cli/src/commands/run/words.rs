@@ -305,9 +305,15 @@ fn through(discharge: &Discharge, summary: &Summary) -> String {
         );
         let spread = significant(discharge.transit_time_variance.sqrt(), 3);
         text.push_str(&format!("\n{grains} went from the inlet to the outlet, in {time} t on average (standard deviation {spread} t)"));
+        if discharge.transit_time.0 > SOON * summary.time {
+            text.push_str("; slower ones are still inside");
+        }
     }
     text
 }
+
+/// Part of a run from which on a mean transit time lacks the slow grains.
+const SOON: f64 = 0.1;
 
 /// Periods to a tenth, fewer than one to two digits.
 fn tenths(periods: f64) -> String {
