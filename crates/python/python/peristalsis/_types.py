@@ -40,7 +40,7 @@ class Keywords(TypedDict, total=False):
     """wall.keep.axial. Stiffness of the axial tether of a wall sphere to its place. (Unit: m t^-2.)"""
     axial_velocity: float
     """initial.axial_velocity. Velocity of every grain along the wave at t = 0. Default: 0 from rest, the wave's
-    speed from jammed. (Unit: d t^-1.)"""
+    speed at t = 0 from jammed. (Unit: d t^-1.)"""
     azimuthal: float
     """wall.keep.azimuthal. Stiffness of the azimuthal tether of a wall sphere to its place. (Unit: m t^-2.)"""
     balance: bool
@@ -542,7 +542,8 @@ class OpenSummary(TypedDict):
     transits: float | None
     """grains that have gone all the way from the inlet to the outlet in the run"""
     transit_time: float | None
-    """mean time from the inlet to the outlet of the grains that have gone all the way in the run [t]"""
+    """mean time from the inlet to the outlet of the grains that have gone all the way in the run: too short where
+    the run is not many times longer [t]"""
     transit_time_error: float | None
     """its standard error [t]"""
     transit_time_variance: float | None
@@ -767,7 +768,8 @@ class Summary(_Rare):
     belly_segregation_error: float | None
     """its standard error"""
     residence_time: float | None
-    """late mean time of a grain through the tube, N/J; missing where the flow is not along the wave [t]"""
+    """late mean time of a grain through the tube, N/J; missing where the flow is not along the wave, and in an open
+    tube [t]"""
     residence_time_error: float | None
     """its standard error [t]"""
     axial_dispersion: float
