@@ -327,7 +327,8 @@ fn written(keys: &Keys, name: &str) -> String {
     let rings = rings.max(f64::from(least_rings));
     let angle = tube.incline.to_radians();
     let [across, along] = [angle.cos(), angle.sin()].map(component);
-    let gravity = [0.0, -keys.gravity * across, keys.gravity * along];
+    // One zero, not two.
+    let gravity = [0.0, 0.0 - keys.gravity * across, keys.gravity * along];
     // Dp in the unit of pressure, k/d, as a body force.
     let pressure = drive.back_pressure * d / stiffness;
     let body_force =

@@ -189,11 +189,13 @@ fn scheduled_value(
 /// A number as it was given, with up to six digits; what SI has made of one, with three.
 fn short(value: f64) -> String {
     let given = rounded(value, 6);
-    if given == value {
-        given.to_string()
+    let shown = if given == value {
+        given
     } else {
-        rounded(value, 3).to_string()
-    }
+        rounded(value, 3)
+    };
+    // One zero, not two.
+    (shown + 0.0).to_string()
 }
 
 fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
@@ -380,8 +382,9 @@ mod tests {
             -1.814_898_7e-4,
             2.84375,
             0.0,
+            -0.0,
         ];
-        let texts = ["0.05", "0.000962", "-0.000181", "2.84375", "0"];
+        let texts = ["0.05", "0.000962", "-0.000181", "2.84375", "0", "0"];
         assert_eq!(numbers.map(short), texts);
     }
 
