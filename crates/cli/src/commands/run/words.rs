@@ -162,8 +162,9 @@ fn in_si(run: &Run, summary: &Summary) -> String {
     let torque = torque.and_then(|torque| summary.in_si(torque, Units::energy));
     let torque = torque.map(|it| format!(" (torque {} N m at a wave a turn)", number(it)));
     let mut text = format!(
-        "\nin SI: {} kg/h, wall power {} W{}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
+        "\nin SI: {} kg/h{}, wall power {} W{}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
         measured((HOUR * mass_flow, HOUR * error)),
+        summary.discharge.map_or("", |_| " along the tube"),
         number(power),
         torque.unwrap_or_default(),
         number(pressure),
