@@ -27,7 +27,7 @@ export type Welcome = {
   /** J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed, and where the wave is no sine that moves. */
   newtonian: Array<[number, number]>,
   driven: Sliders<number>,
-  /** The preset that differs in nothing but what sliders and the length of the tube may change, of whose kind published branches are. */
+  /** The preset that differs in nothing but what sliders and the length of the tube may change: published branches are of some presets. */
   published: string | null,
   /** The whole time series of a run that was computed before: (time in periods, J/Jmax). */
   record: Array<[number, number | null]>,

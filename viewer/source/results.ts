@@ -196,9 +196,8 @@ export class Results {
 
   /** Of the rows of a point, the one that is nearest to what the point shows, of those that can be watched. */
   typical(point: Point, quantity: string): number | null {
-    const isMean = quantity !== FLUCTUATION.name;
-    const name = isMean ? quantity : FLUCTUATION.of;
-    const middle = isMean ? point.value : this.point(point.rows, name, name, null).value;
+    const name = quantity === FLUCTUATION.name ? FLUCTUATION.of : quantity;
+    const middle = this.point(point.rows, name, name, null).value;
     const away = (row: number) => {
       const value = this.number(name, row);
       return Number.isNaN(value) ? Number.MAX_VALUE : Math.abs(value - middle);

@@ -179,8 +179,8 @@ impl Configuration {
 }
 
 impl Drive {
-    /// Sets the amplitude of the drive that is led by a parameter; others stay.
-    fn set_amplitude(&mut self, parameter: ScheduledParameter, value: f64) {
+    /// Sets the amplitude of the drive that is led by a parameter; a drive of the other control stays.
+    pub fn set_amplitude(&mut self, parameter: ScheduledParameter, value: f64) {
         match (parameter, &mut self.control) {
             (ScheduledParameter::Width, Control::Strain { width }) => *width = value,
             (

@@ -317,8 +317,8 @@ pub(crate) fn distrust(draft: &mut Draft, found: &[(String, Collapsed)]) {
     let stretch = number(stretch.fold(1.0, f64::max), 1);
     if !walls.is_empty() {
         draft.finding.weaknesses.push(format!(
-            "The best exponents are not to be trusted on {}: errors had to be stretched by up to {stretch}, or a correction to \
-             scaling is not ruled out.",
+            "Do not trust the best exponents on {}: errors were stretched by up to {stretch}, or a correction to scaling may \
+             matter.",
             match walls.len() == found.len() {
                 true => "any wall".to_owned(),
                 false => walls.join(", "),

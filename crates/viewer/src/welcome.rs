@@ -42,8 +42,8 @@ pub(crate) struct Welcome {
     /// wave is no sine that moves.
     newtonian: Vec<(f64, f64)>,
     pub(crate) driven: Driven,
-    /// The preset that differs in nothing but what sliders and the length of the tube may change, of whose kind published
-    /// branches are.
+    /// The preset that differs in nothing but what sliders and the length of the tube may change: published branches are of
+    /// some presets.
     published: Option<&'static str>,
     /// The whole time series of a run that was computed before: (time in periods, J/Jmax).
     #[cfg_attr(test, ts(as = "Vec<(f64, Option<f64>)>"))]
@@ -130,19 +130,8 @@ fn in_place_of(preset: &Configuration, configuration: &Configuration) -> Configu
         like.grains.number = preset.grains.number;
     }
     like.tube.waves = preset.tube.waves;
-    match (&mut like.drive.control, preset.drive.control) {
-        (Control::Strain { width }, Control::Strain { width: usual }) => *width = usual,
-        (
-            Control::Stress {
-                force_amplitude, ..
-            },
-            Control::Stress {
-                force_amplitude: usual,
-                ..
-            },
-        ) => *force_amplitude = usual,
-        _ => {}
-    }
+    let (parameter, amplitude) = preset.drive.control.amplitude();
+    like.drive.set_amplitude(parameter, amplitude);
     like.drive.schedules.clear();
     like.drive.strain_rate = preset.drive.strain_rate;
     like.drive.direction = preset.drive.direction;
