@@ -12,15 +12,19 @@ use crate::summary::Discharge;
 /// Height of a panel in millimetres.
 const PANEL_HEIGHT: f64 = 28.0;
 
-/// Mass that has left through the outlet, and below it mass between the ends, against time.
-pub(super) fn discharge(run: &Run, discharge: &Discharge) -> Result<Drawing, FigureError> {
+/// Mass that has left through the outlet, and below it mass between the ends, against time; the rate of the last part.
+pub(super) fn discharge(
+    run: &Run,
+    discharge: &Discharge,
+    late_part: f64,
+) -> Result<Drawing, FigureError> {
     let samples = run.recorder().samples();
     let time: Vec<f64> = samples.iter().map(|it| it.time).collect();
     let discharged: Vec<f64> = samples.iter().map(|it| it.discharged).collect();
     let hold_up: Vec<f64> = samples.iter().map(|it| it.hold_up).collect();
     let last = time.last().copied().unwrap_or(1.0);
     let (rate, error) = discharge.rate;
-    let begin = (1.0 - run.late_fraction()) * last;
+    let begin = (1.0 - late_part) * last;
     let line = [begin, last].map(|time| discharge.discharged + rate * (time - last));
     let unit = units(run.configuration()).time();
     let name = format!("late rate {} *m*/{unit}", with_error(rate, error));

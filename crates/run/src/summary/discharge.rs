@@ -2,9 +2,9 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_observe::{Sample, clear_volume_of_wave};
+use peristalsis_observe::clear_volume_of_wave;
 
-use super::late::{frequency, measured};
+use super::late::{Late, frequency};
 use crate::run::Run;
 
 /// The flow through an open tube: late means, each with its error from block averages. Units: d, m, t.
@@ -33,13 +33,12 @@ pub struct Discharge {
 
 impl Discharge {
     /// Of the late samples of a run; `None` of a periodic tube.
-    pub(super) fn of(run: &Run, late: &[Sample]) -> Option<Self> {
+    pub(super) fn of(run: &Run, late: &Late) -> Option<Self> {
         let simulation = run.simulation();
         let ends = simulation.ends()?;
-        let measured = |value: fn(&Sample) -> f64| measured(late, value);
         let times = ends.transit_times();
         let (passed, variance) = (times.number(), times.variance());
-        let rate = measured(|sample| sample.discharge_rate);
+        let rate = late.measured(|sample| sample.discharge_rate);
         let frequency = frequency(run.recorder().samples(), late);
         let refill_efficiency = (frequency > 0.0).then(|| {
             // A grain of mass m has the volume pi m/6.
@@ -48,8 +47,8 @@ impl Discharge {
         });
         Some(Self {
             rate,
-            return_rate: measured(|sample| sample.return_rate),
-            hold_up: measured(|sample| sample.hold_up),
+            return_rate: late.measured(|sample| sample.return_rate),
+            hold_up: late.measured(|sample| sample.hold_up),
             discharged: late.last().map_or(0.0, |sample| sample.discharged),
             leaked: ends.passages().leaked.mass,
             passed,

@@ -1,23 +1,92 @@
 //! Pumping, residence and dispersion in the late part of a run.
 
 use core::f64::consts::TAU;
+use core::ops::Deref;
 
 use peristalsis_analysis::mean_with_error;
-use peristalsis_configuration::Configuration;
+use peristalsis_configuration::{Configuration, ScheduledParameter};
 use peristalsis_observe::{AxialDispersion, ContactForces, PartOfWave, ProfileBin, Sample};
 
 use super::mean_of;
+use crate::recorder::{Recorder, greatest_common_divisor};
+
+/// The late samples of a run, the last of all.
+///
+/// Where the flow pulses with the wave, a part of a period would count as more or less flow, and the pulse as noise. From
+/// four whole late periods on they are therefore whole periods, and errors are from the averages of these.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Late {
+    samples: Vec<Sample>,
+    /// Samples whose average counts as one number in errors.
+    block: usize,
+}
+
+/// Fewest whole periods from which the error of a flow that pulses is taken.
+const LEAST_PERIODS: usize = 4;
+
+impl Late {
+    /// Those of the last part of a record.
+    pub(super) fn of(configuration: &Configuration, recorder: &Recorder, fraction: f64) -> Self {
+        let samples_per_period = u64::from(configuration.observe.samples_per_period);
+        let common = greatest_common_divisor(samples_per_period, recorder.intervals());
+        let block = match pulses(configuration) {
+            // The fewest samples that make whole periods.
+            true => (samples_per_period / common) as usize,
+            false => 1,
+        };
+        Self::in_blocks(recorder.late(fraction), block)
+    }
+
+    fn in_blocks(late: &[Sample], block: usize) -> Self {
+        let (samples, block) = match late.len() / block {
+            0..LEAST_PERIODS => (late, 1),
+            whole => (&late[late.len() - whole * block..], block),
+        };
+        Self {
+            samples: samples.to_vec(),
+            block,
+        }
+    }
+
+    /// Mean of a number of each sample, and its error.
+    pub(super) fn measured(&self, value: impl Fn(&Sample) -> f64) -> (f64, f64) {
+        let values: Vec<f64> = self.iter().map(value).collect();
+        (super::mean(&values), self.error_of(&values))
+    }
+
+    /// Standard error of the mean of a number of each sample.
+    pub(super) fn error_of(&self, values: &[f64]) -> f64 {
+        error_of(values.chunks(self.block).map(super::mean))
+    }
+
+    /// A number of each sample in the first half and in the second, of whole blocks.
+    pub(super) fn halves<'a>(&self, values: &'a [f64]) -> (&'a [f64], &'a [f64]) {
+        let blocks = values.len() / self.block;
+        values.split_at(blocks / 2 * self.block)
+    }
+}
+
+impl Deref for Late {
+    type Target = [Sample];
+
+    fn deref(&self) -> &[Sample] {
+        &self.samples
+    }
+}
+
+/// Whether the mean flow along the tube pulses with the wave: where the wave passes ends, or segments close in turn. A wave
+/// that changes its speed has no period.
+fn pulses(configuration: &Configuration) -> bool {
+    let drive = &configuration.drive;
+    let is_steady =
+        drive.strain_rate > 0.0 && drive.schedule(ScheduledParameter::StrainRate).is_none();
+    is_steady && (configuration.inlet.is_some() || drive.segments.is_some())
+}
 
 /// Standard error of the mean of a correlated series from block averages; NaN of a series too short.
 pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
     let series: Vec<f64> = series.collect();
     mean_with_error(&series).map_or(f64::NAN, |estimate| estimate.error)
-}
-
-/// Mean over the late samples, and its error.
-pub(super) fn measured(late: &[Sample], value: impl Fn(&Sample) -> f64) -> (f64, f64) {
-    let values: Vec<f64> = late.iter().map(value).collect();
-    (super::mean(&values), error_of(values.into_iter()))
 }
 
 /// J/Jmax of each late sample, of the grains inside and of all.
@@ -56,14 +125,6 @@ pub(super) fn flow_rate_ratios(
     ]
 }
 
-/// Mean of these ratios and its error; NaN of too few.
-pub(super) fn mean_ratio(ratios: &[f64]) -> (f64, f64) {
-    match mean_with_error(ratios) {
-        Ok(estimate) => (estimate.mean, estimate.error),
-        Err(_) => (super::mean(ratios), f64::NAN),
-    }
-}
-
 /// Mean frequency at which waves passed in the time of the late samples \[1/t\].
 pub(super) fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
     let early = &samples[..samples.len() - late.len()];
@@ -73,9 +134,8 @@ pub(super) fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
 }
 
 /// Late mean of what flows against the wave: of -J where J < 0 and else 0, each J over the time of a sample \[1/t\].
-pub(super) fn back_flow(late: &[Sample]) -> (f64, f64) {
-    let back = |sample: &Sample| (-sample.flow_rate).max(0.0);
-    measured(late, back)
+pub(super) fn back_flow(late: &Late) -> (f64, f64) {
+    late.measured(|sample| (-sample.flow_rate).max(0.0))
 }
 
 /// Overlap from which on a grain counts as pressed \[d\]: below a tenth, soft grains pass for solid ones.
@@ -104,7 +164,7 @@ pub struct Pumping {
 impl Pumping {
     /// Of the late samples of a run in a tube of this length, of an open one that between its ends; `None` without a body force
     /// along the wave.
-    pub(super) fn of(configuration: &Configuration, length: f64, late: &[Sample]) -> Option<Self> {
+    pub(super) fn of(configuration: &Configuration, length: f64, late: &Late) -> Option<Self> {
         let force = configuration.axial_body_force();
         if force == 0.0 {
             return None;
@@ -115,7 +175,7 @@ impl Pumping {
             // That of the rest of gravity is not pumping.
             _ => force * sample.mass_flow_rate * length,
         };
-        let (power_in, power_error) = measured(late, power);
+        let (power_in, power_error) = late.measured(power);
         let useful_power = -power_in;
         let wall_power = mean_of(late, |sample| sample.wall_power);
         let efficiency = if useful_power > 0.0 && wall_power > 0.0 {
@@ -133,7 +193,7 @@ impl Pumping {
         Some(Self {
             pressure_rise: crowded * configuration.pressure_rise(),
             useful_power: (useful_power, power_error),
-            efficiency: (efficiency, error_of(late.iter().map(beyond)) / wall_power),
+            efficiency: (efficiency, late.measured(beyond).1 / wall_power),
         })
     }
 }
@@ -204,10 +264,10 @@ impl Wear {
 
 /// P/(2 pi f) for the late mean power P of the wall or drive and the mean frequency f at which waves passed then, and its
 /// error \[m d^2/t^2\]; `None` of a wave that stood.
-pub(super) fn wall_torque(samples: &[Sample], late: &[Sample]) -> Option<(f64, f64)> {
+pub(super) fn wall_torque(samples: &[Sample], late: &Late) -> Option<(f64, f64)> {
     let frequency = frequency(samples, late);
     let per_power = 1.0 / (TAU * frequency);
-    let (power, error) = measured(late, |sample| sample.wall_power);
+    let (power, error) = late.measured(|sample| sample.wall_power);
     (frequency > 0.0).then_some((per_power * power, per_power * error))
 }
 
@@ -215,13 +275,13 @@ pub(super) fn wall_torque(samples: &[Sample], late: &[Sample]) -> Option<(f64, f
 /// along the wave.
 ///
 /// T = N/J (Little's law), N the grains inside and J their flow rate; the error is that of N - T J over J
-pub(super) fn residence_time(late: &[Sample]) -> Option<(f64, f64)> {
+pub(super) fn residence_time(late: &Late) -> Option<(f64, f64)> {
     let inside = mean_of(late, |sample| sample.inside);
     let flow = mean_of(late, |sample| sample.flow_rate);
     (flow > 0.0).then(|| {
         let time = inside / flow;
         let beyond = |sample: &Sample| sample.inside - time * sample.flow_rate;
-        (time, error_of(late.iter().map(beyond)) / flow)
+        (time, late.measured(beyond).1 / flow)
     })
 }
 
@@ -237,11 +297,62 @@ pub(super) fn axial_dispersion(late: &[Sample], dispersion: &AxialDispersion) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::summary::mean;
 
     fn samples(value: impl Fn(f64) -> Sample) -> Vec<Sample> {
         (0..40_u32)
             .map(|step| value(0.5 * f64::from(step)))
             .collect()
+    }
+
+    fn steady(late: &[Sample]) -> Late {
+        Late::in_blocks(late, 1)
+    }
+
+    /// Three samples a period, of which the second has a flow of 6 more; mean flows of 12 and 14 in turn.
+    #[test]
+    fn the_pulse_of_a_wave_is_no_noise() {
+        let all = samples(|time| {
+            let sample = (2.0 * time) as u32;
+            let (period, phase) = (sample / 3, sample % 3);
+            Sample {
+                flow_rate: f64::from(10 + 2 * (period % 2) + if phase == 1 { 6 } else { 0 }),
+                ..Sample::default()
+            }
+        });
+        let whole = &all[..39];
+        let flow = |sample: &Sample| sample.flow_rate;
+        // The sample of a ninth period is left out.
+        let late = Late::in_blocks(&whole[whole.len() - 25..], 3);
+        assert_eq!(late.samples, whole[whole.len() - 24..]);
+        let (mean, error) = late.measured(flow);
+        assert!((mean - 13.0).abs() < 1e-12);
+        assert!((error - (8.0_f64 / (7.0 * 8.0)).sqrt()).abs() < 1e-12);
+        let of_samples = error_of(late.iter().map(flow));
+        assert!(of_samples > 1.2 * error, "{of_samples} {error}");
+        // Halves of nine periods have four and five.
+        let late = Late::in_blocks(&whole[whole.len() - 27..], 3);
+        let flows: Vec<f64> = late.iter().map(flow).collect();
+        let (first, second) = late.halves(&flows);
+        assert_eq!((first.len(), second.len()), (12, 15));
+        // Of fewer than four periods all samples count, each for itself.
+        let late = Late::in_blocks(&whole[whole.len() - 11..], 3);
+        assert_eq!((late.len(), late.block), (11, 1));
+    }
+
+    #[test]
+    fn only_waves_that_pass_ends_or_close_in_turn_pulse() {
+        let pulses = |preset: &str, settings: &[&str]| {
+            pulses(&Configuration::from_preset(preset, settings).unwrap())
+        };
+        assert!(!pulses("frictionless", &[]));
+        assert!(!pulses("silo", &[]));
+        assert!(pulses("soft-robot", &[]));
+        let open = "tube.ends=open";
+        assert!(pulses("frictionless", &[open]));
+        let schedule =
+            "drive.schedule={form=\"steps\",parameter=\"strain_rate\",at=[1],values=[0.01]}";
+        assert!(!pulses("frictionless", &[open, schedule]));
     }
 
     #[test]
@@ -255,7 +366,7 @@ mod tests {
                 ..Sample::default()
             });
             let length = configuration.tube.length();
-            Pumping::of(&configuration, length, &late).unwrap()
+            Pumping::of(&configuration, length, &steady(&late)).unwrap()
         };
         let pumped = pumping(0.2, 0.8);
         assert!((pumped.efficiency.0 - 0.25).abs() < 1e-12);
@@ -278,14 +389,14 @@ mod tests {
             ..Sample::default()
         });
         for late in [&all[..], &all[30..]] {
-            let (torque, error) = wall_torque(&all, late).unwrap();
+            let (torque, error) = wall_torque(&all, &steady(late)).unwrap();
             assert!((torque - 0.75).abs() < 1e-12 && error.abs() < 1e-12);
         }
         let still = samples(|time| Sample {
             time,
             ..Sample::default()
         });
-        assert_eq!(wall_torque(&still, &still[20..]), None);
+        assert_eq!(wall_torque(&still, &steady(&still[20..])), None);
     }
 
     /// A wave of one wavelength a time, then of next to none, with 10 grains in a tube of 2 wavelengths.
@@ -307,14 +418,14 @@ mod tests {
                     ..Sample::default()
                 }
             });
-            flow_rate_ratios(&all, &all, 2.0, changes).map(|ratios| mean_ratio(&ratios).0)
+            flow_rate_ratios(&all, &all, 2.0, changes).map(|ratios| mean(&ratios))
         };
         // It runs at the speed 1 for 10 of the 19.5 t.
-        let mean = |slow: f64| 2.0 * 2.0 / 10.0 / ((10.0 + slow * 9.5) / 19.5);
+        let expected = |slow: f64| 2.0 * 2.0 / 10.0 / ((10.0 + slow * 9.5) / 19.5);
         for slow in [1e-3, 1e-6] {
             let found = of(slow, true);
             assert!(
-                found.iter().all(|one| (one - mean(slow)).abs() < 1e-9),
+                found.iter().all(|one| (one - expected(slow)).abs() < 1e-9),
                 "{found:?}"
             );
             assert!(of(slow, false)[0] > 100.0);
@@ -329,7 +440,7 @@ mod tests {
             ..Sample::default()
         });
         let [inside, _] = flow_rate_ratios(&all, &all, 2.0, false);
-        assert!((mean_ratio(&inside).0 - 0.4).abs() < 1e-12);
+        assert!((mean(&inside) - 0.4).abs() < 1e-12);
     }
 
     #[test]
@@ -344,7 +455,7 @@ mod tests {
             },
             ..Sample::default()
         });
-        let (time, error) = residence_time(&late).unwrap();
+        let (time, error) = residence_time(&steady(&late)).unwrap();
         assert!((time - 5.0).abs() < 1e-12);
         assert!((0.0..0.3).contains(&error));
         let back = samples(|_| Sample {
@@ -352,6 +463,6 @@ mod tests {
             flow_rate: -1.0,
             ..Sample::default()
         });
-        assert_eq!(residence_time(&back), None);
+        assert_eq!(residence_time(&steady(&back)), None);
     }
 }

@@ -17,7 +17,7 @@ use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 pub use arrangement::{MixedGrains, SegregatedSizes};
 pub use discharge::Discharge;
 pub use label::label;
-use late::{ForceOfContacts, axial_dispersion, residence_time, wall_torque};
+use late::{ForceOfContacts, Late, axial_dispersion, residence_time, wall_torque};
 pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;
 pub use written::{RowColumn, SummaryKey, row_columns, set_by, summary_keys, summary_schema};
@@ -102,11 +102,12 @@ pub struct Summary {
     /// The trajectory that was written, if there is one.
     pub trajectory: Option<TrajectoryReport>,
     configuration: Configuration,
-    late: Vec<Sample>,
+    late: Late,
     /// J/Jmax of each late sample.
     late_ratios: Vec<f64>,
     flow_rate_ratio_raw: f64,
-    /// Intervals between samples in it.
+    /// Intervals between samples, of the whole run and of its late part.
+    intervals: u64,
     late_intervals: u64,
     /// J/Jmax of each whole late period.
     late_averages: Vec<f64>,
@@ -132,18 +133,18 @@ impl Summary {
         let recorder = run.recorder();
         let simulation = run.simulation();
         let (samples, fraction) = (recorder.samples(), run.late_fraction());
-        let late = recorder.late(fraction);
+        let late = Late::of(configuration, recorder, fraction);
         let late_intervals = late.len() as u64 * recorder.intervals();
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let of_period = (samples_per_period / recorder.intervals()).max(1) as usize;
-        let ends = arrangement::ends_of_periods(samples, late, of_period);
+        let ends = arrangement::ends_of_periods(samples, &late, of_period);
         let length = simulation.length();
         let in_waves = length / configuration.tube.wavelength;
         let changes_speed = configuration
             .drive
             .schedule(ScheduledParameter::StrainRate)
             .is_some();
-        let [ratios, raw_ratios] = late::flow_rate_ratios(samples, late, in_waves, changes_speed);
+        let [ratios, raw_ratios] = late::flow_rate_ratios(samples, &late, in_waves, changes_speed);
         let profile = late_profile(run);
         let part = |part| {
             let profile = recorder.profile();
@@ -158,7 +159,7 @@ impl Summary {
         Self {
             status,
             message,
-            flow_rate_ratio: late::mean_ratio(&ratios),
+            flow_rate_ratio: (mean(&ratios), late.error_of(&ratios)),
             late_ratios: ratios,
             flow_rate_ratio_raw: mean(&raw_ratios),
             transition_time: recorder.transition_time(),
@@ -168,12 +169,12 @@ impl Summary {
             escaped_most: recorder.escaped_most() as u64,
             largest_overlap: simulation.ledger().largest_overlap,
             energy_residual: simulation.energy_residual(),
-            pumping: Pumping::of(configuration, length, late),
-            discharge: Discharge::of(run, late),
+            pumping: Pumping::of(configuration, length, &late),
+            discharge: Discharge::of(run, &late),
             wall_pressure: mean(&pressures),
             wall_pressure_largest: pressures.into_iter().fold(f64::NAN, f64::max),
             wear: Wear::of(configuration, length, &whole, &profile),
-            wall_torque: wall_torque(samples, late),
+            wall_torque: wall_torque(samples, &late),
             mixed: MixedGrains::of(samples, &ends),
             segregated: SegregatedSizes::of(&ends),
             steps: simulation.step(),
@@ -187,20 +188,21 @@ impl Summary {
             late_averages: recorder
                 .late_averages(late_intervals / samples_per_period)
                 .to_vec(),
+            intervals: samples.len() as u64 * recorder.intervals(),
             late_intervals,
             whole,
             narrow: part(WavePart::Narrow),
             front: part(WavePart::Front),
             throat: LocalFlow::throat(&profile),
             belly: LocalFlow::belly(&profile),
-            contact_force: ForceOfContacts::of(late, recorder.contact_forces()),
+            contact_force: ForceOfContacts::of(&late, recorder.contact_forces()),
             // In an open tube grains fill a part of the length that J is of: transit times tell how long they take.
             residence_time: match simulation.ends() {
                 Some(_) => None,
-                None => residence_time(late),
+                None => residence_time(&late),
             },
-            axial_dispersion: axial_dispersion(late, recorder.dispersion()),
-            late: late.to_vec(),
+            axial_dispersion: axial_dispersion(&late, recorder.dispersion()),
+            late,
             packing: *run.packing(),
         }
     }
@@ -252,7 +254,7 @@ impl Summary {
 
     /// Late mean of the mass that flows and its error \[m/t\].
     pub fn mass_flow_rate(&self) -> (f64, f64) {
-        let (rate, error) = late::measured(&self.late, |sample| sample.mass_flow_rate);
+        let (rate, error) = self.late.measured(|sample| sample.mass_flow_rate);
         // No flow has no sign.
         (rate + 0.0, error)
     }
@@ -271,8 +273,7 @@ impl Summary {
 
     /// Late J/Jmax, mean of its second half less that of its first; NaN below two samples.
     pub fn flow_rate_ratio_drift(&self) -> f64 {
-        let ratios = &self.late_ratios;
-        let (first, second) = ratios.split_at(ratios.len() / 2);
+        let (first, second) = self.late.halves(&self.late_ratios);
         if first.is_empty() {
             return f64::NAN;
         }
@@ -288,6 +289,11 @@ impl Summary {
 
     fn mean(&self, value: fn(&Sample) -> f64) -> f64 {
         mean_of(&self.late, value)
+    }
+
+    /// Part of the samples that late means are over.
+    pub(crate) fn late_part(&self) -> f64 {
+        self.late_intervals as f64 / self.intervals.max(1) as f64
     }
 
     /// Periods that late means are over.

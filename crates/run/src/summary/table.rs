@@ -8,7 +8,6 @@ use peristalsis_observe::Reading::{
 use peristalsis_observe::{Quantity, Reading};
 
 use super::Summary;
-use super::late::error_of;
 use crate::{REVISION, VERSION};
 
 /// A quantity of a run and where it is written.
@@ -150,7 +149,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("steps", "1", "steps done", Whole(|s| s.steps)).labelled("steps"),
     result("body_force", "d/t^2", "force over mass on the grains along the wave, gravity's part with it; negative is back pressure", Real(|s| s.configuration.axial_body_force())).at("pumping.body_force").labelled("body force g"),
     result("pressure_rise", "m/(d t^2)", "pressure rise over a wavelength that the body force stands for, with the mean mass of the distribution of sizes", Real(|s| s.pumping.map_or(0.0, |pumping| pumping.pressure_rise))).at("pumping.pressure_rise").labelled("pressure rise"),
-    result("wall_power_error", "m d^2/t^3", "standard error of wall_power", Real(|s| error_of(s.late.iter().map(|sample| sample.wall_power)))),
+    result("wall_power_error", "m d^2/t^3", "standard error of wall_power", Real(|s| s.late.measured(|sample| sample.wall_power).1)),
     result("useful_power", "m d^2/t^3", "late mean power of the flow against the body force, grains inside", OptionalMeasured(|s| s.pumping.map(|pumping| pumping.useful_power))).at("pumping.useful_power").labelled("useful power"),
     result("pumping_efficiency", "1", "useful power over wall power", OptionalMeasured(|s| s.pumping.map(|pumping| pumping.efficiency))).at("pumping.efficiency").labelled("pumping efficiency"),
     result("wall_normal_force", "m d/t^2", "late mean axial force of the wall on the grains of a wavelength (of an open tube: all grains over the waves) along the normals of contacts", Measured(|s| s.whole.normal_force)).labelled("normal force of the wall"),
