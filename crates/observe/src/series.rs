@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Rows that a series has at most: those of 13,000 periods of 20 samples. Beyond, neighbours become one.
+/// Rows that a series of entries of some rows has at most: those of 13,000 periods of 20 samples. Beyond, neighbours become
+/// one.
 pub const MOST_ROWS: usize = 1 << 18;
 
 /// An entry of a series that can replace several neighbouring entries.
@@ -25,7 +26,7 @@ impl Join for f64 {
 /// Entries of equally many rows, one after another.
 ///
 /// While there is room each entry has rows of its own. Then every two neighbours become one, and so do later ones, as if
-/// the run were looked at half as often. The series is never longer than [`MOST_ROWS`].
+/// the run were looked at half as often. The series is never longer than [`MOST_ROWS`], or two entries where these are more.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Series<T> {
     rows: Vec<T>,
@@ -57,8 +58,7 @@ impl<T: Join> Series<T> {
     /// Adds an entry.
     pub fn push(&mut self, entry: impl IntoIterator<Item = T>) {
         if self.in_last == self.each {
-            // An even number of entries.
-            if self.rows.len() / self.width >= MOST_ROWS / self.width / 2 * 2 {
+            if self.rows.len() / self.width >= self.most_entries() {
                 self.halve();
             }
             self.rows.extend(entry);
@@ -72,12 +72,17 @@ impl<T: Join> Series<T> {
         self.in_last += 1;
     }
 
+    /// An even number, for every two become one.
+    fn most_entries(&self) -> usize {
+        (MOST_ROWS / self.width / 2 * 2).max(2)
+    }
+
     /// Makes one of every two neighbours.
     fn halve(&mut self) {
         let (width, each) = (self.width, self.each);
         let entries = self.rows.len() / width;
         let mut rows = std::mem::take(&mut self.rows).into_iter();
-        let mut halved: Vec<T> = Vec::with_capacity(MOST_ROWS);
+        let mut halved: Vec<T> = Vec::with_capacity(self.most_entries() * width);
         for _ in 0..entries / 2 {
             let first = halved.len();
             halved.extend(rows.by_ref().take(width));
@@ -119,7 +124,7 @@ impl<T: Join> Series<T> {
     /// Whether it is a series of entries of `width` rows.
     pub fn fits(&self, width: usize) -> bool {
         self.width == width.max(1)
-            && self.rows.len() <= MOST_ROWS
+            && self.rows.len() / self.width <= self.most_entries()
             && self.rows.len().is_multiple_of(self.width)
             && self.each.is_power_of_two()
             && (1..=self.each).contains(&self.in_last)
@@ -155,5 +160,19 @@ mod tests {
         assert_eq!(series.rows()[4..], [1.0, 2.0]);
         let all = series.take();
         assert_eq!((all.count(), series.count()), (9, 0));
+    }
+
+    #[test]
+    fn entries_of_very_many_rows_are_kept_by_twos() {
+        for width in [MOST_ROWS / 2 + 1, MOST_ROWS + 1] {
+            let mut series = Series::new(width);
+            for entry in 0..5_u32 {
+                series.push(vec![f64::from(entry); width]);
+                assert_eq!(series.count(), u64::from(entry) + 1);
+                assert!(series.fits(width));
+            }
+            assert_eq!(series.each(), 4);
+            assert_eq!([series.rows()[0], series.rows()[width]], [1.5, 4.0]);
+        }
     }
 }

@@ -197,7 +197,7 @@ fn has_restitution(configuration: &Configuration) -> bool {
 pub fn restitution_at_wave_speed(configuration: &Configuration) -> f64 {
     let diameter = configuration.grains.distribution().mean(1);
     let impact = Impact::of_twins(diameter, configuration.wave_speed());
-    configuration.contact.normal.rebound(impact).restitution
+    configuration.contact.normal.impact_restitution(impact)
 }
 
 /// Numbers in the table of a run's spheres, about.

@@ -1,8 +1,9 @@
 //! The contact of two spheres: friction, rolling resistance and cohesion.
 
-use peristalsis_physics::contact::{Cohesion, ContactModel, Normal, PullOff};
+use peristalsis_physics::contact::{Cohesion, ContactModel, Normal, NormalLaw, PullOff};
 
-use super::Context;
+use super::{Context, plain};
+use crate::error::ProblemKind;
 use crate::keys::{ContactKeys, Keys};
 use crate::units::Units;
 
@@ -46,6 +47,9 @@ pub(super) fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<Co
 
 const COHESION_FORCE: &str = "contact.cohesion_force";
 const SURFACE_ENERGY: &str = "contact.surface_energy";
+/// Least surface energy over the stiffness of a contact. Necks of JKR contacts are about this to the power 2/3 long in d: next
+/// to places along a tube, numbers do not resolve them, and powers of them come to 0.
+const LEAST_SURFACE_ENERGY: f64 = 1e-20;
 
 /// The same contact with the cohesion of its keys or of those in SI; refuses what no law has.
 pub(super) fn with_cohesion(
@@ -85,6 +89,16 @@ pub(super) fn with_cohesion(
         let message = format!("{SURFACE_ENERGY} gives JKR cohesion, which goes with the Hertz law");
         let help = format!("contact.law = \"hertz\", or {COHESION_FORCE} for any law");
         return context.refuse(&keys, message, help);
+    }
+    let least = LEAST_SURFACE_ENERGY * contact.normal.stiffness(1.0, 1.0);
+    if surface_energy > 0.0 && surface_energy < least {
+        let (keys, shown) = (&keys[..2], plain(surface_energy));
+        let message = format!(
+            "{SURFACE_ENERGY} = {shown} m/t^2 is next to none beside the stiffness of the grains: the necks of such contacts are too \
+             short for numbers"
+        );
+        let help = format!("0, or at least {} m/t^2", plain(least));
+        return context.refuse_as(ProblemKind::OutOfRange, keys, message, help);
     }
     if cohesion_range > 0.0 && cohesion_force == 0.0 {
         let keys = ["contact.cohesion_range"];

@@ -62,6 +62,7 @@ frictionless | contact.surface_energy=0.1 | contact.surface_energy | Inconsisten
 frictional | contact.cohesion_range=0.1 | contact.cohesion_range | Inconsistent
 frictional | contact.cohesion_force=0.1; contact.pull_off=force | contact.pull_off | Inconsistent
 frictional | contact.cohesion_force=0.1; contact.surface_energy=0.1 | contact.surface_energy | Inconsistent
+frictional | contact.surface_energy=1e-200 | contact.surface_energy | OutOfRange
 frictional | contact.surface_energy=0.001; run.kernel=fast | run.kernel | Inconsistent | the reference kernel alone computes cohesion
 frictional | units.surface_energy=0.05 | units.surface_energy | Missing
 frictional | grains.diameter_spread=0.2 | grains.diameter_spread | Conflict

@@ -9,11 +9,8 @@ use crate::{only_problem, preset, read, record, refuses, schema_errors};
 fn restitution(configuration: &Configuration, speed: f64) -> f64 {
     let grains = &configuration.grains;
     let diameter = 0.5 * (grains.diameter_min + grains.diameter_max);
-    let rebound = configuration
-        .contact
-        .normal
-        .rebound(Impact::of_twins(diameter, speed));
-    rebound.restitution
+    let impact = Impact::of_twins(diameter, speed);
+    configuration.contact.normal.impact_restitution(impact)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Elasticity, Impact, NormalForce, NormalLaw, Rebound};
+use super::{Elasticity, Impact, NormalForce, NormalLaw};
 use crate::real::Real;
 
 /// How the dissipation time enters the viscoelastic force: f_n is proportional to xi^(3/2) - B sqrt(xi) v_n.
@@ -80,26 +80,23 @@ impl ViscoelasticHertz {
     }
 }
 
-/// Step of time in [`scaled_rebound`], of a contact that lasts 3.2 without damping.
+/// Step of time in [`scaled_restitution`], of a contact that lasts 3.2 without damping.
 const SCALED_STEP: f64 = 1e-3;
 /// s above which e, which falls about as s^(-5/3), is below 2e-5 and taken for 0.
 const OVERDAMPED: f64 = 1000.0;
 
-/// The impact x'' = -max(x^(3/2) + s x^(1/2) x', 0), x(0) = 0, x'(0) = 1 of viscoelastic spheres, by the fourth-order
+/// Restitution of the impact x'' = -max(x^(3/2) + s x^(1/2) x', 0), x(0) = 0, x'(0) = 1 of viscoelastic spheres, by the fourth-order
 /// Runge-Kutta method. From where the force vanishes the spheres part freely.
-fn scaled_rebound(damping: f64) -> Rebound {
+fn scaled_restitution(damping: f64) -> f64 {
     if damping > OVERDAMPED {
-        return Rebound {
-            restitution: 0.0,
-            duration: f64::INFINITY,
-        };
+        return 0.0;
     }
     let acceleration = |x: f64, rate: f64| {
         let x = x.max(0.0);
         -(x.sqrt() * (x + damping * rate)).max(0.0)
     };
     let (step, half) = (SCALED_STEP, 0.5 * SCALED_STEP);
-    let (mut x, mut rate, mut time) = (0.0, 1.0, 0.0);
+    let (mut x, mut rate) = (0.0, 1.0);
     while rate > 0.0 || x + damping * rate > 0.0 {
         let a1 = acceleration(x, rate);
         let (r2, a2) = (
@@ -116,21 +113,17 @@ fn scaled_rebound(damping: f64) -> Rebound {
         );
         x += step * (rate + 2.0 * (r2 + r3) + r4) / 6.0;
         rate += step * (a1 + 2.0 * (a2 + a3) + a4) / 6.0;
-        time += step;
         // Without damping the force vanishes where the spheres part.
         if x <= 0.0 {
             break;
         }
     }
-    Rebound {
-        restitution: (-rate).min(1.0),
-        duration: time + x / -rate,
-    }
+    (-rate).min(1.0)
 }
 
 /// s of an impact that ends with this restitution, by bisection.
 fn scaled_damping(restitution: f64) -> f64 {
-    let is_enough = |damping: f64| scaled_rebound(damping).restitution <= restitution;
+    let is_enough = |damping: f64| scaled_restitution(damping) <= restitution;
     let mut enough = 1.0;
     while !is_enough(enough) {
         enough *= 2.0;
@@ -188,21 +181,14 @@ impl NormalLaw for ViscoelasticHertz {
 
     /// By integration of the impact, which depends on s = B v/l alone, l = (m_ij v^2/K)^(2/5); at rest the limit of slow
     /// impacts, e = 1.
-    fn rebound(&self, impact: Impact) -> Rebound {
+    fn impact_restitution(&self, impact: Impact) -> f64 {
         let length = self.impact_length(impact);
         let damping = self.relaxation_time() * impact.speed / length;
         // Nor a number where the impact is out of the range of numbers.
         if length == 0.0 || damping.is_nan() {
-            return Rebound {
-                restitution: 1.0,
-                duration: f64::INFINITY,
-            };
+            return 1.0;
         }
-        let scaled = scaled_rebound(damping);
-        Rebound {
-            duration: scaled.duration * length / impact.speed,
-            ..scaled
-        }
+        scaled_restitution(damping)
     }
 
     /// A from B = s l/v, with the s that belongs to the restitution.

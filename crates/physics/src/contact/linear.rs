@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Elasticity, Impact, NormalForce, NormalLaw, Rebound};
+use super::{Elasticity, Impact, NormalForce, NormalLaw};
 use crate::real::Real;
 
 /// Normal contact force of two spheres, a spring and a dashpot in parallel.
@@ -109,11 +109,8 @@ impl NormalLaw for LinearSpringDashpot {
     }
 
     /// At any speed: e = exp(-pi beta/sqrt(omega_0^2 - beta^2)), see [`LinearSpringDashpot::restitution`].
-    fn rebound(&self, impact: Impact) -> Rebound {
-        Rebound {
-            restitution: self.restitution(impact.reduced_mass),
-            duration: self.contact_time(impact.reduced_mass),
-        }
+    fn impact_restitution(&self, impact: Impact) -> f64 {
+        self.restitution(impact.reduced_mass)
     }
 
     /// eta = 2 (m_ij k)^(1/2) L/(pi^2 + L^2)^(1/2), L = -ln e

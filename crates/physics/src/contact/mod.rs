@@ -158,8 +158,8 @@ pub trait NormalLaw: Copy + Sync {
     /// Largest overlap of an impact along the normal, without dissipation \[d\].
     fn impact_overlap(&self, impact: Impact) -> f64;
 
-    /// Restitution and duration of an impact along the normal.
-    fn rebound(&self, impact: Impact) -> Rebound;
+    /// Restitution e of an impact along the normal: the speed of parting over that of meeting.
+    fn impact_restitution(&self, impact: Impact) -> f64;
 
     /// The same law with the damping that makes an impact end with the restitution e, 0 < e <= 1.
     #[must_use]
@@ -186,15 +186,6 @@ impl Impact {
             speed,
         }
     }
-}
-
-/// Outcome of an [`Impact`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rebound {
-    /// e, the speed of parting over that of meeting.
-    pub restitution: f64,
-    /// Time from touch to parting \[t\].
-    pub duration: f64,
 }
 
 /// The parameter that scales the elastic force of a normal law: the units of time and pressure follow from it.

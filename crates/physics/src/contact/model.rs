@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Cohesion, CundallStrack, Elasticity, Impact, LinearSpringDashpot, NormalForce, NormalLaw,
-    Rebound, RollingResistance, ViscoelasticHertz,
+    RollingResistance, ViscoelasticHertz,
 };
 use crate::real::Real;
 
@@ -57,8 +57,8 @@ impl NormalLaw for Normal {
         with_normal_law!(self, law => law.impact_overlap(impact))
     }
 
-    fn rebound(&self, impact: Impact) -> Rebound {
-        with_normal_law!(self, law => law.rebound(impact))
+    fn impact_restitution(&self, impact: Impact) -> f64 {
+        with_normal_law!(self, law => law.impact_restitution(impact))
     }
 
     fn with_restitution(&self, restitution: f64, impact: Impact) -> Self {

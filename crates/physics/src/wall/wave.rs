@@ -60,8 +60,7 @@ impl Contraction {
     /// Length along the tube over which the shape has one bend at most, about \[lambda\].
     pub fn finest(&self) -> f64 {
         match self {
-            Self::Wave(Waveform::Roller) => 0.05,
-            Self::Wave(_) => 0.25,
+            Self::Wave(waveform) => waveform.finest(),
             Self::Table(table) => table.closest(),
             Self::Segments(segments) => segments.border(),
         }

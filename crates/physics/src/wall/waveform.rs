@@ -127,6 +127,14 @@ impl Waveform {
             Self::Roller => ROLLER_CURVATURES[0] * ROLLER_CONTACT / TAU,
         }
     }
+
+    /// Length over which it has one bend at most, about, in cycles.
+    pub fn finest(self) -> f64 {
+        match self {
+            Self::Sine | Self::Bolus => 0.25,
+            Self::Roller => 0.05,
+        }
+    }
 }
 
 /// Second derivatives of the roller's waveform on the roller and, with the other sign, on the shoulder.

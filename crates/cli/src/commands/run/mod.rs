@@ -60,16 +60,23 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     if let Some(report) = &summary.trajectory {
         tell(format!("trajectory: {}", in_one_line(report)));
     }
-    let is_saved = outcome.finished.is_ok();
-    // Where the disk is full, what could not be written first is what to speak of.
-    if !matches!(outcome.ending, Ending::Unwritten(_)) {
-        let figures = outcome.finished.map_err(|source| Failure::Results {
-            folder: work.folder.clone(),
-            source,
-        })?;
-        if figures.is_empty() {
+    let finished = outcome.finished.map_err(|source| Failure::Results {
+        folder: work.folder.clone(),
+        source,
+    });
+    let is_saved = finished.is_ok();
+    match finished {
+        Ok(figures) if figures.is_empty() => {
             tell("there are no grains to draw: the run has no figures".to_owned());
         }
+        Ok(_) => {}
+        Err(error) => match outcome.ending {
+            // Where the disk is full, what could not be written first is what to speak of.
+            Ending::Unwritten(_) => {}
+            // What has diverged may have no place in a figure.
+            Ending::Failed(_) => say(&format!("not all is in the folder: {error}")),
+            _ => return Err(error),
+        },
     }
     let place = quoted(work.folder.path());
     match outcome.ending {
