@@ -38,26 +38,31 @@ function edges(places: number[]): number[] {
   return [2 * places[0] - inner[0], ...inner, 2 * places[last] - inner[last - 1]];
 }
 
+/** All places of the points along the horizontal axis. */
+const placesOf = (points: Point[]) => [...new Set(points.map(({ x }) => x))].sort((one, other) => one - other);
+
 /** Ends of the horizontal axis about all points. */
 export function across(points: Point[]): [number, number] {
-  const places = [...new Set(points.map(({ x }) => x))].sort((one, other) => one - other);
-  const ends = edges(places);
+  const ends = edges(placesOf(points));
   return [ends[0], ends[ends.length - 1]];
 }
 
-/** Draws a map of the points, a row of cells for each value of the vertical axis; answers the cells. */
-export function drawHeat(chart: Chart, points: Point[], rows: Value[], scale: Scale, chosen: Point | null, colours: Ink): Cell[] {
+/** Draws a map of the points, a row of cells for each value of the vertical axis, one if there is no such axis; answers the cells. */
+export function drawHeat(chart: Chart, points: Point[], rows: (Value | null)[], scale: Scale, chosen: Point | null, colours: Ink): Cell[] {
   const { context, box } = chart;
   const cells: Cell[] = [];
   const height = box.height / rows.length;
+  const places = placesOf(points);
+  const shared = edges(places);
   rows.forEach((value, place) => {
     const own = points.filter((point) => point.other === value);
-    const ends = edges(own.map(({ x }) => x));
+    // A lone point is as wide as it would be among those of all rows.
+    const lone = places.indexOf(own[0]?.x);
+    const ends = own.length === 1 ? shared.slice(lone, lone + 2) : edges(own.map(({ x }) => x));
     const top = box.top + box.height - (place + 1) * height;
     own.forEach((point, k) => {
-      const lone = own.length === 1;
-      const left = lone ? box.left : Math.max(box.left, chart.x.at(ends[k]));
-      const right = lone ? box.left + box.width : Math.min(box.left + box.width, chart.x.at(ends[k + 1]));
+      const left = Math.max(box.left, chart.x.at(ends[k]));
+      const right = Math.min(box.left + box.width, chart.x.at(ends[k + 1]));
       cells.push({ point, left, top, width: right - left, height });
     });
   });
@@ -78,7 +83,7 @@ export function drawHeat(chart: Chart, points: Point[], rows: Value[], scale: Sc
   context.textAlign = "right";
   context.textBaseline = "middle";
   rows.forEach((value, place) => {
-    const text = typeof value === "number" ? written(value) : value;
+    const text = typeof value === "number" ? written(value) : (value ?? "");
     context.fillText(text, box.left - 7, box.top + box.height - (place + 0.5) * height, box.left - 9);
   });
   const cell = cells.find(({ point }) => point === chosen);

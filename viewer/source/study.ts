@@ -239,8 +239,8 @@ class StudyPage {
       chart.canvas.setAttribute("aria-label", `${name} against ${x.label}; arrow keys go from point to point, Enter opens the run`);
       if (choice.view === "heat") {
         const own = this.points.filter(({ start }) => start === panel.start);
-        const rows = this.members().filter((it): it is Value => it !== null);
-        const longest = Math.max(...rows.map((row) => (typeof row === "number" ? written(row) : row).length));
+        const rows = this.members();
+        const longest = Math.max(...rows.map((row) => (typeof row === "number" ? written(row) : (row ?? "")).length));
         const left = Math.min(150, Math.max(42, 7 * longest + 14));
         chart.begin(across(this.points), [0, 1], [x.label, other], colours, { left, scaled: false });
         panel.cells = drawHeat(chart, own, rows, this.scale(), this.chosen, colours);

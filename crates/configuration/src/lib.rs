@@ -66,7 +66,7 @@ pub use presets::{PRESETS, Preset, preset, preset_names};
 pub use reference::reference;
 pub use resolve::{file_keys, file_of};
 pub use schedule::{Schedule, ScheduledParameter};
-pub use schema::{schema, schema_of, unit_of};
+pub use schema::{schema, schema_of, takes_whole_numbers, unit_of};
 pub use source::{Origin, SourceFile, Sources};
 pub use units::{HOUR, Units, elasticity_key, grain_mass};
 pub use waveform::WaveformName;

@@ -13,6 +13,13 @@ use crate::keys::{Keys, exclusive_groups};
 use crate::materials::MATERIALS;
 use crate::presets::preset_names;
 
+/// Whether a key of the configuration takes whole numbers only.
+pub fn takes_whole_numbers(key: &str) -> bool {
+    let place = format!("/properties/{}", key.replace('.', "/properties/"));
+    let found = SCHEMA.pointer(&place);
+    found.is_some_and(|found| found["type"] == "integer")
+}
+
 /// JSON schema (draft 2020-12) of a configuration file.
 ///
 /// Every key has a description with its unit, its default, its range or its names; no other key is allowed. It says

@@ -71,7 +71,7 @@ mod _core {
     #[pymodule_export]
     use crate::schema::{results_schema, schema, summary_keys, summary_schema};
     #[pymodule_export]
-    use crate::study::{Study, store_counts, store_export, store_rows};
+    use crate::study::Study;
     #[pymodule_export]
     use crate::table::Table;
     #[pymodule_export]

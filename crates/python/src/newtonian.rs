@@ -1,6 +1,6 @@
 //! The Newtonian reference, point by point over arrays.
 
-use numpy::{PyArray1, PyReadonlyArray1};
+use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArrayDyn, PyArrayLikeDyn, PyReadonlyArray1};
 use peristalsis_physics::newtonian::{NewtonianPeristalsis, Trapping, trapping_threshold};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -253,7 +253,7 @@ impl Newtonian {
     /// Returns
     /// -------
     /// ndarray
-    ///     Shape (n,).
+    ///     In the shape of position.
     ///
     /// Examples
     /// --------
@@ -264,8 +264,8 @@ impl Newtonian {
     fn wall_radius<'py>(
         &self,
         py: Python<'py>,
-        position: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        position: PyArrayLikeDyn<'py, f64, AllowTypeChange>,
+    ) -> Bound<'py, PyArrayDyn<f64>> {
         along(py, &position, |position| self.flow.wall_radius(position))
     }
 
@@ -273,13 +273,13 @@ impl Newtonian {
     ///
     /// Parameters
     /// ----------
-    /// position : ndarray
-    ///     x = (z - c t)/lambda, shape (n,), float64.
+    /// position : array_like
+    ///     x = (z - c t)/lambda.
     ///
     /// Returns
     /// -------
     /// ndarray
-    ///     Shape (n,).
+    ///     In the shape of position.
     ///
     /// Examples
     /// --------
@@ -290,8 +290,8 @@ impl Newtonian {
     fn pressure_along_wave<'py>(
         &self,
         py: Python<'py>,
-        position: PyReadonlyArray1<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        position: PyArrayLikeDyn<'py, f64, AllowTypeChange>,
+    ) -> Bound<'py, PyArrayDyn<f64>> {
         along(py, &position, |position| {
             self.flow.pressure_along_wave(position)
         })
@@ -330,7 +330,7 @@ impl Newtonian {
         &self,
         py: Python<'py>,
         radius: PyReadonlyArray1<'py, f64>,
-        position: PyReadonlyArray1<'py, f64>,
+        position: PyArrayLikeDyn<'py, f64, AllowTypeChange>,
     ) -> PyResult<[Bound<'py, PyArray1<f64>>; 3]> {
         let (radius, position) = (radius.as_slice()?, position.as_slice()?);
         if radius.len() != position.len() {
@@ -367,14 +367,10 @@ impl Newtonian {
 /// A quantity at each position.
 fn along<'py>(
     py: Python<'py>,
-    position: &PyReadonlyArray1<'py, f64>,
+    position: &PyArrayLikeDyn<'py, f64, AllowTypeChange>,
     quantity: impl Fn(f64) -> f64,
-) -> PyResult<Bound<'py, PyArray1<f64>>> {
-    let position = position.as_slice()?;
-    Ok(PyArray1::from_iter(
-        py,
-        position.iter().copied().map(quantity),
-    ))
+) -> Bound<'py, PyArrayDyn<f64>> {
+    position.as_array().mapv(quantity).into_pyarray(py)
 }
 
 /// Amplitude ratio from which on a bolus is trapped at a pressure rise.

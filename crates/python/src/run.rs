@@ -33,6 +33,12 @@ pub(crate) struct Run {
 }
 
 impl Run {
+    /// One that has diverged goes no further.
+    fn check_divergence(&self) -> PyResult<()> {
+        let words = self.divergence.get();
+        words.map_or(Ok(()), |words| Err(DivergedError::new_err(words.clone())))
+    }
+
     fn of(run: peristalsis_run::Run) -> Self {
         Self {
             run: Mutex::new(run),
@@ -209,9 +215,7 @@ impl Run {
 
     /// Advances by `steps` steps, or until so many seconds are over; answers the steps done.
     fn advance(&self, py: Python<'_>, steps: u64, seconds: f64) -> PyResult<u64> {
-        if let Some(words) = self.divergence.get() {
-            return Err(DivergedError::new_err(words.clone()));
-        }
+        self.check_divergence()?;
         let limit = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
         self.look(py, |run| {
             let (begin, first) = (Instant::now(), run.simulation().step());
@@ -236,6 +240,7 @@ impl Run {
 
     /// Leads a parameter of the drive to a value within so many periods; within 0 it jumps there with the next step.
     fn drive_to(&self, py: Python<'_>, name: &str, value: f64, periods: f64) -> PyResult<()> {
+        self.check_divergence()?;
         let parameter = scheduled(name)?;
         self.look(py, |run| run.drive_to(parameter, value, periods))
             .map_err(of_run)
@@ -243,6 +248,7 @@ impl Run {
 
     /// Whether a parameter of the drive could be led to a value.
     fn check_drive(&self, py: Python<'_>, name: &str, value: f64) -> PyResult<()> {
+        self.check_divergence()?;
         let parameter = scheduled(name)?;
         let checked = self.look(py, |run| run.check_drive(parameter, value).map(drop));
         checked.map_err(of_run)

@@ -127,37 +127,41 @@ impl Study {
             (None, Ending::TimeUp) => Ok("time_up"),
         }
     }
-}
 
-/// The finished runs of a store, one a row.
-#[pyfunction]
-pub(crate) fn store_rows(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
-    let rows = py.detach(|| Store::open(&path)?.rows()).map_err(of_study)?;
-    Table::new(&rows)
-}
-
-/// How many runs of a store are in which state.
-#[pyfunction]
-pub(crate) fn store_counts<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
-    let survey = py.detach(|| Store::open(&path)?.survey());
-    let counts = survey.map_err(of_study)?.counts().into_iter();
-    counts
-        .map(|(state, number)| (state.name(), number))
-        .into_py_dict(py)
-}
-
-/// Writes the tables of a store as Parquet and CSV; answers the files.
-#[pyfunction]
-pub(crate) fn store_export<'py>(
-    py: Python<'py>,
-    path: PathBuf,
-    folder: PathBuf,
-    series: bool,
-) -> PyResult<Bound<'py, PyList>> {
-    if !path.is_dir() {
-        let text = format!("there is no store {}", path.display());
-        return Err(PyFileNotFoundError::new_err(text));
+    /// The runs of this study that are finished in a store, one a row.
+    fn rows(&self, py: Python<'_>, store: PathBuf) -> PyResult<Table> {
+        let rows = py.detach(|| self.store(&store)?.rows());
+        Table::new(&rows.map_err(of_study)?)
     }
-    let exported = py.detach(|| Store::open(&path)?.export(&folder, series));
-    PyList::new(py, exported.map_err(of_study)?.files)
+
+    /// How many runs of this study are in which state in a store.
+    fn counts<'py>(&self, py: Python<'py>, store: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+        let survey = py.detach(|| self.store(&store)?.survey());
+        let counts = survey.map_err(of_study)?.counts().into_iter();
+        counts
+            .map(|(state, number)| (state.name(), number))
+            .into_py_dict(py)
+    }
+
+    /// Writes the tables of this study in a store as Parquet and CSV; answers the files.
+    fn export<'py>(
+        &self,
+        py: Python<'py>,
+        store: PathBuf,
+        folder: PathBuf,
+        series: bool,
+    ) -> PyResult<Bound<'py, PyList>> {
+        if !store.is_dir() {
+            let text = format!("there is no store {}", store.display());
+            return Err(PyFileNotFoundError::new_err(text));
+        }
+        let exported = py.detach(|| self.store(&store)?.export(&folder, series));
+        PyList::new(py, exported.map_err(of_study)?.files)
+    }
+}
+
+impl Study {
+    fn store(&self, path: &Path) -> Result<Store, StudyError> {
+        Store::open_for(path, &self.specification)
+    }
 }

@@ -81,6 +81,13 @@ pub struct Progress {
     pub elapsed: Duration,
 }
 
+impl Progress {
+    /// Part of the run that is done, from 0 to 1.
+    pub fn part(&self) -> f64 {
+        self.samples as f64 / self.samples_total.max(1) as f64
+    }
+}
+
 impl Run {
     /// Packs the grains.
     ///

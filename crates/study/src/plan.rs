@@ -191,7 +191,7 @@ impl Plan {
                     format!("two points of the axes are the same run: {one}; {other}"),
                 )
                 .key("axes")
-                .help("an axis names a value once, and a key that changes something: not an amplitude that drive.schedule leads from t = 0 on");
+                .help("an axis names a value once, and a key that changes something: not an amplitude that drive.schedule leads from t = 0 on, nor a run.time_step that becomes the same one, for a sample has a whole number of steps");
                 problems.push(problem);
                 break;
             }

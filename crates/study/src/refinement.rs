@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use peristalsis_configuration::document::Item;
-use peristalsis_configuration::{ConfigurationError, InitialState, word};
+use peristalsis_configuration::{InitialState, takes_whole_numbers, word};
 
 use crate::identity::Identity;
 use crate::plan::{Plan, Point};
@@ -202,18 +202,17 @@ pub fn brackets(
 ///
 /// Between the value at which all runs changed their flow and that at which none did, the gaps between points are halved
 /// until none is wider than the tolerance. A line of points is bisected only when all its runs have ended, so that the
-/// points added do not depend on the order in which runs end.
-///
-/// # Errors
-/// The faults of the configuration of a new point.
+/// points added do not depend on the order in which runs end. Of a key that takes whole numbers the middle is one, or its
+/// neighbour where the configuration allows that alone; a gap without a point that can be stays as it is.
 pub fn refine(
     study: &Specification,
     plan: &mut Plan,
     found: &dyn Fn(&Identity) -> Option<Finding>,
-) -> Result<bool, ConfigurationError> {
+) -> bool {
     let Some(refine) = &study.refinement else {
-        return Ok(false);
+        return false;
     };
+    let is_whole = takes_whole_numbers(&study.axes[refine.axis].keys[0].0);
     let mut grown = false;
     loop {
         let counts = counts(plan, found);
@@ -224,27 +223,40 @@ pub fn refine(
                 continue;
             }
             for (lower, upper) in line.undecided(&counts) {
-                let middle = neat(0.5 * (lower + upper));
-                if upper - lower <= refine.tolerance || middle <= lower || middle >= upper {
+                if upper - lower <= refine.tolerance {
                     continue;
                 }
                 let model = line.0[0].2;
-                let item = Item {
-                    origin: refine.origin.clone(),
-                    node: numeric(middle),
-                };
-                let mut choice = study.choice(&model.rows);
-                choice[setting_of(study, refine.axis)].2 = &item;
-                let state = study.states.as_ref().map(|_| model.state);
-                added.push(study.point(&choice, &model.rows, state)?);
+                let between = middles(lower, upper, is_whole).filter_map(|middle| {
+                    let item = Item {
+                        origin: refine.origin.clone(),
+                        node: numeric(middle),
+                    };
+                    let mut choice = study.choice(&model.rows);
+                    choice[setting_of(study, refine.axis)].2 = &item;
+                    let state = study.states.as_ref().map(|_| model.state);
+                    study.point(&choice, &model.rows, state).ok()
+                });
+                added.extend({ between }.next());
             }
         }
         if added.is_empty() {
-            return Ok(grown);
+            return grown;
         }
         plan.add(added);
         grown = true;
     }
+}
+
+/// Where to put a point between two, best first.
+fn middles(lower: f64, upper: f64, is_whole: bool) -> impl Iterator<Item = f64> {
+    let middle = 0.5 * (lower + upper);
+    let places = match is_whole {
+        true => vec![middle.floor(), middle.floor() + 1.0, middle.floor() - 1.0],
+        false => vec![neat(middle)],
+    };
+    let is_between = move |place: &f64| lower < *place && *place < upper;
+    places.into_iter().filter(is_between)
 }
 
 /// Points that refinement adds where every line changes within one gap between its points and runs differ all the way
@@ -258,7 +270,11 @@ pub(crate) fn usual_added_points(study: &Specification, plan: &Plan) -> usize {
     values.sort_by(f64::total_cmp);
     let gaps = values.windows(2).map(|pair| pair[1] - pair[0]);
     let (mut gap, mut halvings) = (gaps.fold(0.0, f64::max), 0);
-    while gap > refine.tolerance && halvings < 60 {
+    let least = match takes_whole_numbers(&study.axes[refine.axis].keys[0].0) {
+        true => refine.tolerance.max(1.0),
+        false => refine.tolerance,
+    };
+    while gap > least && halvings < 60 {
         gap *= 0.5;
         halvings += 1;
     }

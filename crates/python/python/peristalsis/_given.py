@@ -72,7 +72,7 @@ def numbers(name: str, value: Any) -> Array:
         raise TypeError(f"{name} is an array of numbers, not {value!r}") from None
 
 
-def of_kind(name: str, value: Any, kind: type, origin: str) -> None:
+def of_kind(name: str, value: Any, kind: type | tuple[type, ...], origin: str) -> None:
     """Refuses what is no object of a kind; `origin` says what makes one."""
     if not isinstance(value, kind):
         raise TypeError(f"{name} is {origin}, not {value!r}")

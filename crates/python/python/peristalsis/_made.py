@@ -274,7 +274,7 @@ class Made(Output):
         Returns
         -------
         bytes
-            What `save` writes to a file.
+            What `save` writes to a file. That a simulation has diverged is not kept.
 
         Examples
         --------
@@ -312,6 +312,7 @@ class Made(Output):
         >>> peristalsis.Simulation.from_bytes(sim.to_bytes()).steps
         0
         """
+        of_kind("snapshot", snapshot, (bytes, bytearray, memoryview), "the bytes of a snapshot")
         return cls._going_on(_core.Run.from_bytes(bytes(snapshot)))
 
     @classmethod

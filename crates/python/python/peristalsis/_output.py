@@ -244,7 +244,7 @@ class Output(Drive):
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a snapshot to a file, whole or not at all, over an older one; `Simulation.load` goes on from it, and so does
-        ``peristalsis run --resume FILE``.
+        ``peristalsis run --resume FILE``. That a simulation has diverged is not kept.
 
         Parameters
         ----------

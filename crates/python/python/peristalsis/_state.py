@@ -224,7 +224,8 @@ class State:
         energy = initial_energy + wall_work + drive_work + keep_work + body_work + exchanged - normal_dissipated -
         tangential_dissipated - sliding_dissipated - rolling_dissipated - cohesion_dissipated - drag_dissipated -
         network_dissipated - history_reset, up to the part `energy_residual` of the energy that entered. `exchanged` is the
-        energy that grains brought into an open tube, less what others took out.
+        energy that grains brought into an open tube, less what others took out. `gross_work` is what went in and out, each
+        piece of work by its size; `largest_overlap` is a length [d].
 
         Examples
         --------
@@ -434,7 +435,7 @@ class State:
         return self._run.timeseries()
 
     def profile(self) -> Table:
-        """Profile in the wave frame over the late part of what was measured, one row per bin.
+        """Profile in the wave frame over the late part of what was measured, one row per bin: over whole periods, at least one.
 
         Returns
         -------

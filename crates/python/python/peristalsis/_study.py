@@ -143,7 +143,7 @@ class Study:
         Returns
         -------
         Study
-            As its file was when the store was made.
+            That which ran on the store last.
 
         Raises
         ------
@@ -270,7 +270,9 @@ class Study:
         return ending
 
     def rows(self) -> Table:
-        """The finished runs, one a row, with the units of the columns.
+        """The finished runs of this study, one a row, with the units of the columns.
+
+        Runs of the store that are not in :meth:`plan`, nor added by ``refine``, are left out.
 
         Returns
         -------
@@ -280,7 +282,7 @@ class Study:
         Raises
         ------
         StudyFailure, OSError
-            Where there is no store yet.
+            Where there is no store yet, or that of a study of another name.
 
         Examples
         --------
@@ -295,10 +297,10 @@ class Study:
         >>> len(rows), rows.units["strain_rate"]
         (2, '1/t')
         """
-        return _core.store_rows(os.fspath(self.store))
+        return self._study.rows(os.fspath(self.store))
 
     def counts(self) -> dict[str, int]:
-        """How many runs are in which state.
+        """How many runs of this study are in which state.
 
         Returns
         -------
@@ -317,10 +319,10 @@ class Study:
         >>> study.counts()
         {'done': 2}
         """
-        return _core.store_counts(os.fspath(self.store))
+        return self._study.counts(os.fspath(self.store))
 
     def export(self, folder: str | os.PathLike[str], series: bool = False) -> list[str]:
-        """Write the tables as Parquet and CSV.
+        """Write the tables of this study as Parquet and CSV.
 
         Parameters
         ----------
@@ -351,7 +353,7 @@ class Study:
         >>> any(file.endswith(".csv") for file in study.export(f"{folder}/tables"))
         True
         """
-        files = _core.store_export(os.fspath(self.store), os.fspath(folder), series)
+        files = self._study.export(os.fspath(self.store), os.fspath(folder), series)
         return [os.fspath(file) for file in files]
 
     def __repr__(self) -> str:

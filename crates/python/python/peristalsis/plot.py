@@ -181,7 +181,7 @@ def _level(ax: Axes, value: float, name: str | None, **line: Any) -> None:
 def _flow_references(ax: Axes, summary: Mapping[str, Any]) -> None:
     for value in (0.0, 1.0):
         _level(ax, value, None, color=GREY, linewidth=0.4, zorder=0.5)
-    _level(ax, summary["transition_threshold"], "threshold", color="black", linestyle=":", linewidth=0.8)
+    _level(ax, summary["transition_threshold"], "threshold", color=ax.xaxis.label.get_color(), linestyle=":", linewidth=0.8)
     for key, name, dashes in (
         ("newtonian_flow_rate_ratio", "Newtonian fluid", "--"),
         ("newtonian_flow_rate_ratio_clear_bore", "the same, clear bore", "-."),
@@ -502,6 +502,8 @@ def collapse(
     of_kind("what", what, Collapse, "a peristalsis.analysis.Collapse")
     chosen = parameters.parameters if isinstance(parameters, CollapseResult) else parameters
     labels = list(names) if names is not None else [f"{curve[0]:g}" for curve in what.curves]
+    if len(labels) != len(what.curves):
+        raise ValueError(f"names has {len(labels)} names for {len(what.curves)} curves")
     quality = what.quality(chosen)
     with drawing(ax) as new:
         for place, ((_, x, y, error), label) in enumerate(zip(what.scaled(chosen), labels, strict=True)):

@@ -72,6 +72,8 @@ struct Common {
     /// What the index said last, rows apart.
     entries: HashMap<Identity, Entry>,
     news: Vec<String>,
+    /// Part of each run that was there when this process took it up, where it was begun before.
+    taken_up: HashMap<Identity, f64>,
     /// The first error that ended a thread.
     error: Option<StudyError>,
     /// Threads at work.
@@ -84,7 +86,7 @@ impl Common {
         self.entries = self.index.findings()?;
         let entries = &self.entries;
         let found = |identity: &Identity| finding(entries, identity);
-        Ok(refine(study, &mut self.plan, &found)?)
+        Ok(refine(study, &mut self.plan, &found))
     }
 }
 
@@ -174,6 +176,7 @@ pub fn work_on(
         plan: study.plan().clone(),
         entries: HashMap::new(),
         news,
+        taken_up: HashMap::new(),
         error: None,
         active: workers,
     };
@@ -256,7 +259,7 @@ fn coordinate(
 /// Measures how far a study is, and how fast it goes.
 struct Gauge {
     begin: Instant,
-    /// Work done when the measurement began.
+    /// Part of the work that had ended when the measurement began.
     before: f64,
     /// What the estimates were made from, and they themselves.
     brackets: (usize, Vec<crate::Bracket>),
@@ -307,7 +310,8 @@ impl Gauge {
             self.brackets = (done + failed, brackets(study, &common.plan, &found));
         }
         let fraction = fraction(common, &self.board.workers);
-        let gained = fraction - self.before;
+        let taken_up = |run: &PlannedRun| common.taken_up.get(&run.identity).copied();
+        let gained = fraction - self.before - part_of_work(common, taken_up);
         let left = (gained > 0.0).then(|| self.begin.elapsed().mul_f64((1.0 - fraction) / gained));
         self.board = Board {
             total: runs.len(),
@@ -323,22 +327,24 @@ impl Gauge {
 
 /// Part of the work of a study that is done.
 fn fraction(common: &Common, working: &[Option<Working>]) -> f64 {
-    let part_of = |working: &Working| {
-        let progress = working.progress?;
-        let part = progress.samples as f64 / progress.samples_total.max(1) as f64;
-        Some((working.identity, part))
-    };
+    let part_of = |working: &Working| Some((working.identity, working.progress?.part()));
     let working = working.iter().flatten().filter_map(part_of);
     let working: HashMap<Identity, f64> = working.collect();
-    let (mut all, mut done) = (0.0, 0.0);
+    part_of_work(common, |run| {
+        match common.entries.get(&run.identity).map(|entry| entry.state) {
+            Some(State::Done | State::Failed) => Some(1.0),
+            _ => working.get(&run.identity).copied(),
+        }
+    })
+}
+
+/// Part of the work of a study that these parts of its runs are.
+fn part_of_work(common: &Common, part: impl Fn(&PlannedRun) -> Option<f64>) -> f64 {
+    let (mut all, mut parts) = (0.0, 0.0);
     for run in common.plan.runs() {
         let work = work(&common.plan.point(run).configuration);
         all += work;
-        done += work
-            * match common.entries.get(&run.identity).map(|entry| entry.state) {
-                Some(State::Done | State::Failed) => 1.0,
-                _ => working.get(&run.identity).copied().unwrap_or(0.0),
-            };
+        parts += work * part(run).unwrap_or(0.0);
     }
-    if all > 0.0 { done / all } else { 1.0 }
+    if all > 0.0 { parts / all } else { 1.0 }
 }

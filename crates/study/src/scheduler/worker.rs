@@ -117,6 +117,10 @@ fn carry_out(
         }) => return give_up(shared, files, identity, &source.to_string()),
         Err(error) => return Err(error),
     };
+    if run.progress().samples > 0 {
+        let part = run.progress().part();
+        shared.common().taken_up.insert(identity, part);
+    }
     advance(shared, slot, files, assignment, &mut run)
 }
 

@@ -147,6 +147,7 @@ impl Specification {
         problems.check()?;
         let keys = Keys::deserialize(document::to_toml(&table))
             .expect("a file that follows the schema can be read");
+        check_states(&table, &mut problems);
         let axes = axes(&table, &mut problems);
         let refinement = keys
             .refine
@@ -179,10 +180,7 @@ impl Specification {
             },
             refinement,
             axes,
-            states: keys.states.map(|mut states| {
-                states.dedup();
-                states
-            }),
+            states: keys.states,
             plan: Plan::default(),
             base,
             text: text.to_owned(),
@@ -393,6 +391,27 @@ fn check_keys(table: &Table, problems: &mut Problems) {
             problem = problem.at(&other.key, "and here");
         }
         problems.push(problem);
+    }
+}
+
+/// No state is named twice.
+fn check_states(table: &Table, problems: &mut Problems) {
+    let states = document::entry(table, "states").map(|entry| &entry.item.node);
+    let Some(Node::Array(items)) = states else {
+        return;
+    };
+    for (place, item) in items.iter().enumerate() {
+        let is_same = |other: &&Item| other.origin.text() == item.origin.text();
+        if let Some(first) = items[..place].iter().find(is_same) {
+            let message = format!("states has {} twice", item.origin.text());
+            let problem = Problem::new(ProblemKind::Conflict, message)
+                .key("states")
+                .at(&item.origin, "here")
+                .at(&first.origin, "and here")
+                .help("name a state once; `replicates` are runs of the same point");
+            problems.push(problem);
+            return;
+        }
     }
 }
 

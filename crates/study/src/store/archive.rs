@@ -24,6 +24,8 @@ pub struct Packed {
     /// Runs of an archive that were left out since they are not finished or their files differ from their seal, with the
     /// reason.
     pub refused: Vec<(Identity, String)>,
+    /// Runs of a table whose row differs from that of the run that is finished here.
+    pub different: usize,
     /// Finished runs that an archive does not hold, for their rows were imported and they have no files here.
     pub without_files: usize,
 }

@@ -1,5 +1,6 @@
 //! Checks the files of a store against their seals; a damaged file is moved aside.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -20,6 +21,8 @@ pub struct Verification {
     pub imported: usize,
     /// Runs whose files differ from their seal, with what was wrong; what there is of them was moved aside.
     pub quarantined: Vec<(Identity, String)>,
+    /// Copies of imported tables that are gone, or were changed and moved aside, with the number of runs that went with each.
+    pub lost_tables: BTreeMap<String, usize>,
     /// Runs that can go on from a checkpoint.
     pub checkpointed: usize,
     /// Runs that ended in an error.
@@ -109,10 +112,14 @@ impl Store {
             }
         }
         for (identity, entry) in index.entries()? {
-            let is_lost = entry.is_computed() && !entries.contains_key(&identity);
-            if is_lost && !leases.contains_key(&identity) {
+            if entries.contains_key(&identity) || leases.contains_key(&identity) {
+                continue;
+            }
+            if entry.is_computed() {
                 let reason = "its files are gone".to_owned();
                 found.quarantined.push((identity, reason));
+            } else if let Some(table) = entry.table() {
+                *found.lost_tables.entry(table.to_owned()).or_default() += 1;
             }
         }
         for identity in self.identities(QUARANTINE)? {

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use peristalsis_configuration::takes_whole_numbers;
 use peristalsis_formats::{Column, Table, Values, csv, parquet};
 use peristalsis_run::files;
 use serde_json::Value;
@@ -22,12 +23,18 @@ pub struct Exported {
     pub files: Vec<PathBuf>,
     /// Those that took the place of a file of the same name.
     pub replaced: Vec<PathBuf>,
+    /// Tables of an older export that would say something else beside these: they were removed.
+    pub removed: Vec<PathBuf>,
     /// Finished runs in the table.
     pub rows: usize,
     /// Those among them that lost grains through the wall.
     pub leaking: usize,
-    /// Runs of the plan that are not finished.
+    /// Runs of the plan that are not finished, those that failed among them.
     pub missing: usize,
+    /// Runs of the plan that failed.
+    pub failed: usize,
+    /// Finished runs that have no time series here: they were imported as rows, or the study does not keep J/Jmax.
+    pub without_series: usize,
     /// Runs whose files differ from their seal; they were moved aside, and are missing.
     pub quarantined: Vec<(Identity, String)>,
 }
@@ -84,7 +91,8 @@ impl Store {
 
     /// Writes the tables of the study into a folder: `NAME.parquet` and `NAME.csv`, a row a finished run in the order of
     /// the axes; `NAME-timing.csv`, what each took; `NAME-failed.csv`, the runs that failed; and with `series`
-    /// `NAME-series.parquet`, J/Jmax in time of every run.
+    /// `NAME-series.parquet`, J/Jmax in time of every run. Where an older export left one of the last two that this one does
+    /// not write, it goes.
     ///
     /// Every hash is checked on the way. The first table holds nothing that depends on when, in which order or how often
     /// interrupted the runs were computed: the same study gives the same bytes.
@@ -100,9 +108,12 @@ impl Store {
         let mut exported = Exported {
             files: Vec::new(),
             replaced: Vec::new(),
+            removed: Vec::new(),
             rows: finished.len(),
             leaking: finished.iter().filter(|it| it.row.leaks()).count(),
             missing: survey.plan.runs().len() - finished.len(),
+            failed: survey.counts().get(&State::Failed).copied().unwrap_or(0),
+            without_series: 0,
             quarantined,
         };
         let mut note = |file: String| {
@@ -119,12 +130,25 @@ impl Store {
         let timing = self.timing_table(&finished)?;
         csv::write(&note(format!("{name}-timing.csv")), &timing)?;
         let failed = failed_table(&survey)?;
-        if failed.rows() > 0 {
-            csv::write(&note(format!("{name}-failed.csv")), &failed)?;
+        let [of_failed, of_series] = [
+            format!("{name}-failed.csv"),
+            format!("{name}-series.parquet"),
+        ];
+        let has_failed = failed.rows() > 0;
+        if has_failed {
+            csv::write(&note(of_failed.clone()), &failed)?;
         }
         if series {
-            let series = self.series_table(&finished)?;
-            parquet::write(&note(format!("{name}-series.parquet")), &series)?;
+            let (table, without) = self.series_table(&finished)?;
+            parquet::write(&note(of_series.clone()), &table)?;
+            exported.without_series = without;
+        }
+        for (file, is_written) in [(of_failed, has_failed), (of_series, series)] {
+            let path = folder.join(file);
+            if !is_written && path.is_file() {
+                fs::remove_file(&path).map_err(StudyError::io("remove", &path))?;
+                exported.removed.push(path);
+            }
         }
         Ok(exported)
     }
@@ -187,8 +211,8 @@ impl Store {
         by_run(columns, timed)
     }
 
-    /// J/Jmax in time of every run that was computed here.
-    fn series_table(&self, finished: &[Finished]) -> Result<Table> {
+    /// J/Jmax in time of every run that was computed here and keeps it, and how many runs have none.
+    fn series_table(&self, finished: &[Finished]) -> Result<(Table, usize)> {
         let ratio = "J/Jmax, mean over the interval, grains inside";
         let columns = [
             ["time", "t", "end of the interval that the row is about"],
@@ -198,6 +222,9 @@ impl Store {
         let mut series = Vec::new();
         for identity in computed(finished) {
             let table = parquet::read(&self.run_folder(identity).join(files::TIMESERIES))?;
+            if table.reals("flow_rate_ratio").is_err() {
+                continue;
+            }
             let values = columns.map(|[name, ..]| match table.reals(name) {
                 Ok(values) => values.to_vec(),
                 // A study may keep other columns.
@@ -205,7 +232,8 @@ impl Store {
             });
             series.push((identity, values));
         }
-        by_run(columns, series)
+        let without = finished.len() - series.len();
+        Ok((by_run(columns, series)?, without))
     }
 }
 
@@ -293,14 +321,6 @@ fn column_values(key: &str, values: &[&SettingValue]) -> Values {
         return Values::Real(numbers.collect());
     }
     Values::Text(values.iter().map(ToString::to_string).collect())
-}
-
-/// Whether a key of the configuration takes whole numbers only.
-fn takes_whole_numbers(key: &str) -> bool {
-    let schema = peristalsis_configuration::schema();
-    let place = format!("/properties/{}", key.replace('.', "/properties/"));
-    let found = schema.pointer(&place);
-    found.is_some_and(|found| found["type"] == "integer")
 }
 
 /// The runs of the plan that failed, each with its reason.

@@ -54,6 +54,14 @@ impl Store {
         let packed = Packed {
             runs: first_of.len(),
             taken: new.len(),
+            different: first_of
+                .iter()
+                .filter(|(identity, row)| {
+                    let entry = known.get(identity).filter(|it| it.state == State::Done);
+                    let here = entry.and_then(|entry| Row::from_csv(entry.row.as_deref()?).ok());
+                    here.is_some_and(|here| row.conflict(&here).is_some())
+                })
+                .count(),
             ..Packed::default()
         };
         let Some((first, others)) = new.split_first() else {
@@ -74,7 +82,7 @@ impl Store {
         Ok(packed)
     }
 
-    /// The rows of all imported tables.
+    /// The rows of all imported tables; a table that is not what was written is moved aside.
     pub(super) fn imported(&self) -> Result<HashMap<Identity, Entry>> {
         let folder = self.file(IMPORTED);
         let Ok(entries) = fs::read_dir(&folder) else {
@@ -122,9 +130,20 @@ fn rows_of(path: &Path) -> Result<Vec<Row>> {
     Row::all_of(&table).map_err(StudyError::not_rows(path))
 }
 
+/// How the reason of an imported entry begins; its table follows.
+const IMPORTED_WITH: &str = "imported with ";
+
 fn imported_entry(row: &Row, table: &str) -> Entry {
     Entry {
-        reason: Some(format!("imported with {IMPORTED}/{table}.csv")),
+        reason: Some(format!("{IMPORTED_WITH}{IMPORTED}/{table}.csv")),
         ..done(row, None)
+    }
+}
+
+impl Entry {
+    /// The copy of the table that the row of a finished run was imported with.
+    pub(super) fn table(&self) -> Option<&str> {
+        let reason = self.reason.as_deref().filter(|_| self.state == State::Done);
+        reason?.strip_prefix(IMPORTED_WITH)
     }
 }

@@ -62,30 +62,24 @@ pub(crate) const LEASE_TIMEOUT: Duration = Duration::from_secs(180);
 #[derive(Clone, Debug)]
 pub struct Store {
     path: PathBuf,
+    /// The study that is asked about, where it is not that of the store's file.
+    asked: Option<Specification>,
     /// The study as it was read last: its runs are found once while its file stays as it is.
     study: Arc<Mutex<Option<Specification>>>,
 }
 
 impl Store {
     /// Opens the store of a study, or makes one in a folder that is missing or empty; the store's copy of the study file
-    /// becomes this one.
+    /// becomes this one. What it answers is about this study, also when its file has become another since.
     ///
     /// # Errors
     /// [`StudyError::OtherStudy`], [`StudyError::NoStore`] where the folder holds other files, errors of writing.
     pub fn create(path: &Path, study: &Specification) -> Result<Self> {
-        let store = Self::at(path);
+        let store = Self::at(path).asked(study)?;
         if store.file(STUDY).exists() {
-            match store.name() {
-                Some(found) if found != study.name => {
-                    return Err(StudyError::OtherStudy {
-                        path: path.to_owned(),
-                        found,
-                        expected: study.name.clone(),
-                    });
-                }
-                Some(_) => {}
-                // The copy is damaged; the runs are what they are.
-                None => set_aside(&store.file(STUDY), "damaged")?,
+            // The copy is damaged; the runs are what they are.
+            if store.name().is_none() {
+                set_aside(&store.file(STUDY), "damaged")?;
             }
         } else if !store.holds_nothing_else() {
             return Err(StudyError::NoStore {
@@ -102,13 +96,35 @@ impl Store {
             fs::create_dir_all(folder).map_err(StudyError::io("make", folder))?;
             write_if_other(&file, &text)?;
         }
-        *store.study() = Some(study.clone());
         Ok(store)
+    }
+
+    /// Opens a store to ask about this study, which its file need not be: the file stays as it is.
+    ///
+    /// # Errors
+    /// [`StudyError::NoStore`], [`StudyError::OtherStudy`] where it is that of a study of another name.
+    pub fn open_for(path: &Path, study: &Specification) -> Result<Self> {
+        Self::open(path)?.asked(study)
+    }
+
+    fn asked(self, study: &Specification) -> Result<Self> {
+        match self.name() {
+            Some(found) if found != study.name => Err(StudyError::OtherStudy {
+                path: self.path,
+                found,
+                expected: study.name.clone(),
+            }),
+            _ => Ok(Self {
+                asked: Some(study.clone()),
+                ..self
+            }),
+        }
     }
 
     fn at(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
+            asked: None,
             study: Arc::default(),
         }
     }
@@ -177,11 +193,14 @@ impl Store {
         RunFiles::new(&self.file(RUNS), identity)
     }
 
-    /// The study that the store keeps.
+    /// The study that the store was opened for, or that of its file.
     ///
     /// # Errors
     /// As [`Specification::read`].
     pub fn specification(&self) -> Result<Specification> {
+        if let Some(study) = &self.asked {
+            return Ok(study.clone());
+        }
         let (path, base) = (self.file(STUDY), self.file(BASE));
         let mut last = self.study();
         if let Some(study) = last.as_ref().filter(|study| study.is_still(&path, &base)) {

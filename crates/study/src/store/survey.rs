@@ -135,7 +135,7 @@ impl Store {
             .map(|(identity, lease)| (identity, lease.in_words()))
             .collect();
         let mut plan = study.plan().clone();
-        refine(&study, &mut plan, &|identity| finding(&entries, identity))?;
+        refine(&study, &mut plan, &|identity| finding(&entries, identity));
         Ok(Survey {
             study,
             plan,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use peristalsis_study::{Store, StudyError};
 
-use crate::{Place, SMALL, entries, flip};
+use crate::{Place, SMALL, entries, flip, study};
 
 #[test]
 fn imported_rows_are_finished_runs_and_the_table_is_the_same() {
@@ -21,7 +21,8 @@ fn imported_rows_are_finished_runs_and_the_table_is_the_same() {
         let table = first.path(&format!("tables/small.{ending}"));
         assert_eq!(second.store().import_table(&table).unwrap().taken, 6);
         // Again, to no effect.
-        assert_eq!(second.store().import_table(&table).unwrap().taken, 0);
+        let again = second.store().import_table(&table).unwrap();
+        assert_eq!((again.taken, again.different), (0, 0));
         assert_eq!(second.complete(), Vec::<String>::new());
         assert!(second.run_folders().is_empty());
         let out = second.path("out");
@@ -169,7 +170,7 @@ fn rows_of_finished_runs_are_not_taken_even_when_the_index_is_made_anew() {
         let changed = second.path("changed.csv");
         fs::write(&changed, format!("{head}\n{}\n", cells.join(","))).unwrap();
         let found = second.store().import_table(&changed).unwrap();
-        assert_eq!((found.runs, found.taken), (6, 0));
+        assert_eq!((found.runs, found.taken, found.different), (6, 0, 1));
     }
     assert_eq!(second.store().scan().unwrap().imported, 6);
     let out = second.path("out");
@@ -182,10 +183,57 @@ fn an_imported_copy_that_was_damaged_is_not_believed() {
     let (first, _, second) = imported();
     let copy = entries(&second.path("store/imported")).remove(0);
     flip(&copy, 0.9);
-    assert_eq!(second.store().scan().unwrap().imported, 0);
+    let found = second.store().scan().unwrap();
+    assert_eq!(found.imported, 0);
+    let lost: Vec<usize> = found.lost_tables.into_values().collect();
+    assert_eq!(lost, [6]);
     assert!(!copy.exists());
     second.complete();
     assert_eq!(second.tables(), first.tables());
+}
+
+/// In a notebook an edited study answered with the runs of the one before.
+#[test]
+fn a_store_answers_for_the_study_that_is_asked_about() {
+    let first = Place::new(SMALL);
+    first.complete();
+    let other = study(&SMALL.replace("[2.5, 2.8]", "[2.8, 2.9]"));
+    let path = first.path("store");
+    let widths = |store: &Store| store.rows().unwrap().reals("width").unwrap().to_vec();
+    let asked = Store::open_for(&path, &other).unwrap();
+    assert_eq!(widths(&asked), [2.8; 3]);
+    assert_eq!(
+        widths(&Store::open(&path).unwrap()),
+        [2.5, 2.5, 2.5, 2.8, 2.8, 2.8]
+    );
+    // Another process makes the store that of a smaller study: whoever works on the larger one is told of that.
+    let larger = first.store();
+    Store::create(&path, &other).unwrap();
+    assert_eq!(widths(&larger), [2.5, 2.5, 2.5, 2.8, 2.8, 2.8]);
+    let stranger = study(&SMALL.replace("\"small\"", "\"other\""));
+    let error = Store::open_for(&path, &stranger).unwrap_err();
+    assert!(matches!(error, StudyError::OtherStudy { .. }), "{error}");
+    let error = Store::open_for(&first.path("none"), &other).unwrap_err();
+    assert!(matches!(error, StudyError::NoStore { .. }), "{error}");
+}
+
+#[test]
+fn tables_of_an_older_export_go_where_they_would_contradict() {
+    let place = Place::new(SMALL);
+    place.complete();
+    let out = place.path("tables");
+    let exported = place.store().export(&out, true).unwrap();
+    assert_eq!((exported.failed, exported.without_series), (0, 0));
+    fs::write(out.join("small-failed.csv"), "identity\n").unwrap();
+    let exported = place.store().export(&out, false).unwrap();
+    let older = ["small-failed.csv", "small-series.parquet"].map(|name| out.join(name));
+    assert_eq!(exported.removed, older);
+    assert!(older.iter().all(|path| !path.exists()));
+    assert_eq!(exported.replaced, exported.files);
+    // Imported rows have no series.
+    let (_first, _, second) = imported();
+    let exported = second.store().export(&second.path("tables"), true).unwrap();
+    assert_eq!((exported.rows, exported.without_series), (6, 6));
 }
 
 #[test]

@@ -7,9 +7,7 @@ use std::time::{Duration, Instant};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_formats::{Column, Table, Values, parquet};
 use peristalsis_run::{TrajectoryFormat, files, label, row_columns};
-use peristalsis_study::{
-    Finding, Identity, Plan, PlannedRun, Specification, State, Store, StudyError, refine,
-};
+use peristalsis_study::{Finding, Identity, Plan, PlannedRun, Specification, State, Store, refine};
 use serde::Serialize;
 
 use super::error::ViewerError;
@@ -119,7 +117,7 @@ impl Study {
         let said = |key: &str| table.metadata().get(key).cloned();
         let name = said("peristalsis.study").unwrap_or_else(|| name.to_owned());
         let title = said("peristalsis.title").unwrap_or_default();
-        let plan = design.map(|design| plan_of(design, &table)).transpose()?;
+        let plan = design.map(|design| plan_of(design, &table));
         let mut study = Self::new(name, title, table);
         study.counts = BTreeMap::from([(State::Done, study.table.rows())]);
         if let Some(plan) = plan {
@@ -284,7 +282,7 @@ fn meaning(column: &Column) -> &str {
 }
 
 /// The plan of a study with these finished runs.
-fn plan_of(design: &Specification, table: &Table) -> Result<Plan, ViewerError> {
+fn plan_of(design: &Specification, table: &Table) -> Plan {
     let identities = identities(table).unwrap_or_default();
     let times = table.reals("transition_time").unwrap_or_default();
     let finding = |time: &f64| match time.is_nan() {
@@ -295,8 +293,8 @@ fn plan_of(design: &Specification, table: &Table) -> Result<Plan, ViewerError> {
     let findings: HashMap<Identity, Finding> = findings.collect();
     let found = |identity: &Identity| findings.get(identity).copied();
     let mut plan = design.plan().clone();
-    refine(design, &mut plan, &found).map_err(StudyError::from)?;
-    Ok(plan)
+    refine(design, &mut plan, &found);
+    plan
 }
 
 /// Identities of the runs of the rows.

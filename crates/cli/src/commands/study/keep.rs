@@ -42,7 +42,9 @@ pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
 pub(crate) fn verify(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
     let found = Store::open(&arguments.store)?.scan()?;
     print(&in_words(&found))?;
-    Ok(code_of(found.quarantined.is_empty()))
+    Ok(code_of(
+        found.quarantined.is_empty() && found.lost_tables.is_empty(),
+    ))
 }
 
 pub(crate) fn scan(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
@@ -58,6 +60,12 @@ fn in_words(found: &Verification) -> String {
         found.failed
     );
     text.extend(moved_aside(&found.quarantined).map(|line| line + "\n"));
+    text.extend(found.lost_tables.iter().map(|(table, runs)| {
+        format!(
+            "{table} is gone, or was changed and is moved aside, and with it {}: import its table again\n",
+            counted(*runs, "finished run")
+        )
+    }));
     text
 }
 
@@ -79,9 +87,21 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     for file in &exported.replaced {
         say(&format!("replaces {}", file.display()));
     }
-    let missing = exported.missing;
+    for file in &exported.removed {
+        say(&format!("removes {}, of an older export", file.display()));
+    }
+    let (failed, missing) = (exported.failed, exported.missing - exported.failed);
+    if failed > 0 {
+        say(&format!("failed: {}", counted(failed, "run")));
+    }
     if missing > 0 {
         say(&format!("not finished yet: {}", counted(missing, "run")));
+    }
+    if exported.without_series > 0 {
+        say(&format!(
+            "without a series: {}, imported as rows or without flow_rate_ratio in record.columns",
+            counted(exported.without_series, "run")
+        ));
     }
     if exported.leaking > 0 {
         say(&format!(
@@ -138,6 +158,12 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
         }
         let (taken, all, file) = (packed.taken, counted(packed.runs, "run"), file.display());
         print(&format!("{taken} of {all} taken from {file}\n"))?;
+        if packed.different > 0 {
+            say(&format!(
+                "{} finished here already, with other numbers than in {file}: left as they are",
+                counted(packed.different, "run")
+            ));
+        }
     }
     Ok(code_of(is_whole))
 }

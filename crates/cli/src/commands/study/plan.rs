@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use peristalsis_analysis::number::bytes;
 use peristalsis_engine::processors;
-use peristalsis_study::{Specification, State, Store, StudyEstimate, study_estimate};
+use peristalsis_study::{Specification, State, Store, StudyError, StudyEstimate, study_estimate};
 use serde_json::json;
 
 use super::{PlanArguments, store_path};
@@ -18,8 +18,8 @@ pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     let plan = study.plan();
     let estimate = study_estimate(&study, plan)?;
     let path = store_path(&arguments.store, &study);
-    let finished = match Store::open(&path) {
-        Err(_) if arguments.store.is_none() || !path.exists() => 0,
+    let finished = match Store::open_for(&path, &study) {
+        Err(StudyError::NoStore { .. }) if arguments.store.is_none() || !path.exists() => 0,
         Err(error) => return Err(error.into()),
         Ok(store) => {
             let survey = store.survey()?;

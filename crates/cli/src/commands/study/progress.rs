@@ -104,7 +104,7 @@ pub(crate) fn overall(board: &Board, part: &str, left: Option<Duration>) -> Stri
 fn in_words(working: &Working) -> String {
     let mut text = working.point.clone();
     if let Some(progress) = working.progress {
-        let part = 100.0 * progress.samples as f64 / progress.samples_total.max(1) as f64;
+        let part = 100.0 * progress.part();
         text.push_str(&format!("  {part:.0} %  {}", found(&progress)));
     } else {
         text.push_str("  packing");

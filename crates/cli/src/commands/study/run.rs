@@ -50,7 +50,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             Ok(ExitCode::SUCCESS)
         }
         Ending::TimeUp => {
-            tell(format!("time is up, every run is saved; {again}"));
+            say(&format!("time is up, every run is saved; {again}"));
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped => {

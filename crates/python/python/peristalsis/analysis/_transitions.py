@@ -65,7 +65,7 @@ class Survival:
     Raises
     ------
     AnalysisError
-        Without a transition, for times that are negative or not finite, and where an outcome is missing.
+        For times that are negative or not finite, and where an outcome is missing.
 
     Examples
     --------
@@ -146,7 +146,7 @@ class Survival:
         Raises
         ------
         AnalysisError
-            Below 3 transitions, or for a horizon beyond the time watched.
+            Below 3 transitions, or for a horizon beyond the time watched, unless the curve has come to 0 by then.
 
         Examples
         --------
@@ -168,6 +168,9 @@ def transition_time(
     period_duration: float = 1.0,
 ) -> TransitionTime:
     """Time at which the line through period averages crosses a threshold for good: three whole periods beyond it.
+
+    Each average stands at the middle of its period. The line begins at time 0 with J/Jmax of the initial state: 0 upward, 1
+    downward. If that lies beyond the threshold already, the line crosses it at time 0.
 
     Parameters
     ----------
@@ -223,7 +226,7 @@ def restricted_moments(
     Raises
     ------
     AnalysisError
-        Below 3 transitions, or for a horizon beyond the time watched.
+        Below 3 transitions, or for a horizon beyond the time watched, unless the curve has come to 0 by then.
 
     Examples
     --------
