@@ -104,7 +104,7 @@ pub enum Error {
         watched: f64,
     },
     /// Times so nearly equal that a distribution cannot be fitted: its shape would be infinite.
-    #[error("{observed} transition times scatter too little for a distribution to be fitted")]
+    #[error("{observed} values scatter too little for a distribution to be fitted")]
     NoScatter {
         /// Observed transitions.
         observed: usize,

@@ -98,9 +98,9 @@ pub fn decimal(value: f64, decimals: usize) -> String {
     typeset(&format!("{value:.decimals$}"))
 }
 
-/// A number with so many significant digits, as programs write it: plain where that reads well, else with a power of ten.
+/// A number with so many significant digits, one at least, as programs write it: plain where that reads well, else with a power of ten.
 pub fn significant(value: f64, digits: usize) -> String {
-    let after_the_first = digits - 1;
+    let after_the_first = digits.saturating_sub(1);
     let scientific = format!("{value:.after_the_first$e}");
     let power = scientific.split_once('e');
     match power.and_then(|(_, power)| power.parse::<i32>().ok()) {
@@ -112,21 +112,25 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A number rounded to so many significant digits.
+/// A number rounded to so many significant digits, one at least.
 pub fn rounded(value: f64, digits: usize) -> f64 {
-    let after_the_first = digits - 1;
+    let after_the_first = digits.saturating_sub(1);
     let text = format!("{value:.after_the_first$e}");
     text.parse().unwrap_or(value)
 }
 
 /// A number of bytes in a unit that suits it: "12.3 MB".
 pub fn bytes(number: f64) -> String {
-    for (factor, unit) in [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")] {
-        if number >= factor {
+    // What would be written as a thousand of a unit is one of the next.
+    for (factor, unit) in [(1e12, "TB"), (1e9, "GB"), (1e6, "MB")] {
+        if number >= 0.99995 * factor {
             return format!("{:.1} {unit}", number / factor);
         }
     }
-    format!("{number:.0} B")
+    match number < 999.5 {
+        true => format!("{number:.0} B"),
+        false => format!("{:.1} kB", number / 1e3),
+    }
 }
 
 /// So many of something, in the plural where it is not one: "1 run", "2 finished runs".

@@ -179,7 +179,8 @@ impl TransitionDetector {
     }
 
     /// Takes a period without an average, as of a wave that stands still: a crossing under way is forgotten. The line to the
-    /// next average begins with the last one, as if it were of the period before.
+    /// next average begins with the last one, as if it were of the period before; where that lies beyond the threshold too, the
+    /// crossing is where the line begins.
     pub fn skip(&mut self) {
         if !self.is_complete() {
             self.crossing = None;
@@ -216,7 +217,8 @@ impl TransitionDetector {
         let middle = self.periods as f64 + 0.5;
         let previous = if self.periods == 0 { 0.0 } else { middle - 1.0 };
         let fraction = (self.threshold - self.last_average) / (average - self.last_average);
-        // It is elsewhere, or no number, only where the initial state is beyond the threshold.
+        // It is elsewhere, or no number, only where the initial state is beyond the threshold, or what came before a pause:
+        // that begins the line, and the flow has been beyond since.
         let is_between = (0.0..=1.0).contains(&fraction);
         let fraction = if is_between { fraction } else { 0.0 };
         (previous + (middle - previous) * fraction) * self.period_duration

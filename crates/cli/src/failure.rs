@@ -10,7 +10,7 @@ use peristalsis_engine::EngineError;
 use peristalsis_formats::FormatError;
 use peristalsis_reproduce::ReproduceError;
 use peristalsis_run::{RenderError, RunError, RunFolder, files};
-use peristalsis_study::StudyError;
+use peristalsis_study::{SEAL, StudyError};
 use peristalsis_viewer::ViewerError;
 
 /// Why a command ended without what was asked for.
@@ -299,8 +299,12 @@ fn of_run(error: &RunError) -> Advice {
         RunError::NoRun { folder, .. } | RunError::NothingToResume { folder, .. }
             if folder.join(files::CONFIGURATION).is_file() =>
         {
+            let keeps_none = match folder.join(SEAL).is_file() {
+                true => "a store keeps no state of a finished run; ",
+                false => "",
+            };
             wrong(format!(
-                "begin it anew in another folder: peristalsis run {} --out DIR",
+                "{keeps_none}begin it anew in another folder: peristalsis run {} --out DIR",
                 quoted(&folder.join(files::CONFIGURATION))
             ))
         }

@@ -23,7 +23,10 @@ pub(crate) fn moving_spheres(configuration: &Configuration) -> u64 {
 
 /// Bytes that a run takes at most, about: as measured of runs with many spheres and of runs with many samples.
 pub(crate) fn memory(configuration: &Configuration) -> f64 {
-    let waves = configuration.run.periods.unwrap_or(0.0) * f64::from(configuration.tube.waves);
+    let waves = f64::from(configuration.tube.waves);
+    let periods = configuration.run.duration * configuration.drive.strain_rate;
+    // A series holds two entries at least, and each wave has sums of its own; all are there twice while they are written.
+    let rows_of_waves = (waves * periods).min((2.0 * waves).max(MOST_ROWS as f64)) + waves;
     let samples = configuration.run.samples as f64;
     let of_sphere = if configuration.remembers_contacts() {
         BYTES_WITH_CONTACTS
@@ -33,7 +36,7 @@ pub(crate) fn memory(configuration: &Configuration) -> f64 {
     BYTES_OF_PROGRAM
         + of_sphere * moving_spheres(configuration) as f64
         + (size_of::<Sample>() as f64) * samples.min(MOST_ROWS as f64)
-        + (size_of::<WaveFlow>() as f64) * waves.min(MOST_ROWS as f64)
+        + (2 * size_of::<WaveFlow>()) as f64 * rows_of_waves
 }
 
 /// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end

@@ -48,4 +48,6 @@ pub use row::Row;
 pub use row_difference::{RESUMMED, RowDifference};
 pub use scheduler::{Board, Effort, Ending, Working, work_on};
 pub use specification::{Specification, schema};
-pub use store::{Entry, Exported, Packed, STUDY, Staleness, State, Store, Survey, Verification};
+pub use store::{
+    Entry, Exported, Packed, SEAL, STUDY, Staleness, State, Store, Survey, Verification,
+};

@@ -89,12 +89,8 @@ pub(crate) const JKR_FORCE: Cohesion = Cohesion {
 
 /// Laws with rolling resistance, cohesion, and both.
 fn general() -> Vec<(String, ContactModel)> {
-    let normals = [
-        Normal::Linear(LINEAR),
-        Normal::Hertz(hertz(DissipationForm::Viscoelastic)),
-    ];
     let mut rows = Vec::new();
-    for normal in normals {
+    for (_, normal) in normals() {
         for cohesion in [None, Some(PULL), Some(JKR), Some(JKR_FORCE)] {
             let is_hertz = matches!(normal, Normal::Hertz(_));
             for rolling in [None, Some(ROLLING)] {

@@ -41,6 +41,7 @@ pub use export::Exported;
 pub(crate) use index::{Claim, Index};
 pub(crate) use owner::Owner;
 pub(crate) use run_files::{Assignment, RunFiles, Verdict};
+pub use seal::SEAL;
 pub use staleness::Staleness;
 pub use survey::Survey;
 pub(crate) use survey::finding;

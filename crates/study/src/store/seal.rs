@@ -9,8 +9,8 @@ use sha2::{Digest, Sha256};
 use crate::error::Result;
 use crate::identity::{Identity, PHYSICS_VERSION};
 
-/// Name of the file.
-pub(crate) const SEAL: &str = "done.json";
+/// Name of the file by which a run is finished.
+pub const SEAL: &str = "done.json";
 
 /// A product: its name, size and hash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -52,6 +52,12 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.sbatch", study.name)),
     };
+    if path.is_dir() {
+        return Err(Failure::usage(
+            format!("{} is a folder", path.display()),
+            "name the file of the script",
+        ));
+    }
     say_if_replaced(&path);
     std::fs::write(&path, script).map_err(Failure::write(&path))?;
     print(&format!(
