@@ -138,8 +138,9 @@ class StudyPage {
     if (!results) return;
     options("value", results.quantities, choice.value);
     options("x", numeric(results), choice.x);
-    const none = choice.view === "curves" ? [{ name: "none", label: "none" }] : [];
-    options("other", [...results.parameters.filter(({ name }) => name !== choice.x), ...none], choice.other);
+    const others = results.parameters.filter(({ name }) => name !== choice.x);
+    const none = choice.view === "curves" || others.length === 0 ? [{ name: "none", label: "none" }] : [];
+    options("other", [...others, ...none], choice.other);
     // A box may be too narrow for what is chosen.
     for (const id of ["value", "x", "other"]) element(id).title = element<HTMLSelectElement>(id).selectedOptions[0]?.text ?? "";
     element("other-name").textContent = choice.view === "heat" ? "up" : "family";
