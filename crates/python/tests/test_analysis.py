@@ -282,3 +282,5 @@ def test_newtonian_flow_ends_at_the_wall() -> None:
     for quantity in newtonian.field(flow, [1.001 * flow.wall_radius(x)], x):
         assert np.isnan(quantity).all()
     assert repr(flow) == "Newtonian(amplitude_ratio=0.5, pressure=0.1)"
+    assert flow.wall_radius([[0.25, 0.75]]).tolist() == [[1.5, 0.5]] and flow.wall_radius(0.25) == 1.5
+    assert flow.pressure_along_wave(np.array([0, 1], dtype=np.float32)).round(6).tolist() == [0.0, 0.1]

@@ -500,6 +500,9 @@ def test_doubts_are_told_of_a_run_that_fails() -> None:
             sim.run(periods=10, callback=callback)
         assert {str(it.message) for it in caught} == {str(it) for it in sim.warnings}
         assert all(it.filename == __file__ for it in caught)
+    # It goes no further, whatever is asked of it.
+    with pytest.raises(peristalsis.DivergedError):
+        fails.width = 2.6
     stops._told.clear()
     with warnings.catch_warnings(), pytest.raises(LookupError):
         warnings.simplefilter("error")

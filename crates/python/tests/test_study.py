@@ -55,6 +55,20 @@ def test_runs_that_fail_are_told(tmp_path: Path) -> None:
     assert "20000 grains do not fit" in reasons.read_text()
 
 
+def test_an_edited_study_has_its_own_runs_alone(tmp_path: Path) -> None:
+    study = peristalsis.study(WIDTHS, store=tmp_path / "store")
+    study.run(workers=2)
+    edited = peristalsis.study({**WIDTHS, "axes": [{"key": "drive.width", "values": [2.8, 2.9]}]}, store=tmp_path / "store")
+    assert edited.counts() == {"done": 2, "pending": 2} and set(edited.rows()["drive.width"]) == {2.8}
+    assert peristalsis.Study.open(tmp_path / "store").counts() == {"done": 4}
+    edited.run(workers=2)
+    assert set(study.rows()["drive.width"]) == {2.6, 2.8} and study.counts() == {"done": 4}
+    stranger = peristalsis.study({**WIDTHS, "name": "others"}, store=tmp_path / "store")
+    for ask in (stranger.counts, stranger.rows, stranger.run, lambda: stranger.export(tmp_path / "tables")):
+        with pytest.raises(peristalsis.StudyFailure, match="holds the study `widths`, not `others`"):
+            ask()
+
+
 def test_from_a_file(tmp_path: Path) -> None:
     path = tmp_path / "study.toml"
     path.write_text('name = "one"\npreset = "frictionless"\nreplicates = 3\n')
