@@ -21,7 +21,10 @@ HEAD = '''"""Types of keywords and of summaries. Made by scripts/python_types.py
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypedDict
+
+import numpy as np
+import numpy.typing as npt
 
 '''
 
@@ -119,6 +122,13 @@ def field(name: str, kind: str, meaning: str) -> str:
     return f"    {name}: {kind}\n    {text}\n"
 
 
+def given(key: str, kind: str) -> str:
+    """The type of what may be given for a key: whole numbers and lists of numbers also as numpy has them."""
+    kind = re.sub(r"Sequence\[(?:int|float)\]", r"\g<0> | npt.NDArray[Any]", kind)
+    kind = re.sub(r"\bint\b(?!\])", "SupportsIndex", kind)
+    return f"{kind} | np.random.Generator" if key == "run.seed" else kind
+
+
 def keywords() -> Iterator[str]:
     """The lines of the keywords."""
     schema = json.loads(_core.schema())
@@ -132,7 +142,7 @@ def keywords() -> Iterator[str]:
             is_short = keyword == keys[0].rpartition(".")[2]
             has_short = len(_keywords.keywords()[keys[0].rpartition(".")[2]]) == 1
             meaning = f"{keys[0]}. {of_key['description']}" if is_short or not has_short else ""
-            yield field(keyword, kind_of(of_key), meaning)
+            yield field(keyword, given(keys[0], kind_of(of_key)), meaning)
 
 
 def dictionary(name: str, schema: Mapping[str, Any]) -> Iterator[str]:

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal, TypedDict
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, TypedDict
+
+import numpy as np
+import numpy.typing as npt
 
 if TYPE_CHECKING:
     #: Names of the presets.
@@ -21,7 +24,7 @@ class Keywords(TypedDict, total=False):
     'jammed'
     """
 
-    acceleration: Sequence[float]
+    acceleration: Sequence[float] | npt.NDArray[Any]
     """units.acceleration. Gravity [x, y, z] in SI, instead of body.gravity: [0, -9.81, 0] is a horizontal tube on
     Earth. (Unit: m s^-2.)"""
     amplitude: float
@@ -29,12 +32,12 @@ class Keywords(TypedDict, total=False):
     control. (Unit: d.)"""
     angle: Literal["reference", "current"]
     """drive.angle. Angle that fixes the radial direction of the force on a wall sphere; stress control."""
-    angles: Sequence[float]
+    angles: Sequence[float] | npt.NDArray[Any]
     """tube.angles. Angle of each wall sphere about the axis, from x towards y; under arrangement = "file". (Unit:
     rad.)"""
     arrangement: Literal["staggered", "aligned", "random", "disordered", "file", "smooth"]
     """tube.arrangement. How the wall spheres stand."""
-    arrangement_seed: int
+    arrangement_seed: SupportsIndex
     """tube.arrangement_seed. Seed of a random or disordered arrangement. (A pure number.)"""
     axial: float
     """wall.keep.axial. Stiffness of the axial tether of a wall sphere to its place. (Unit: m t^-2.)"""
@@ -49,7 +52,7 @@ class Keywords(TypedDict, total=False):
     """drive.body_force. Body force g on the grains, force over mass along the wave. Negative is back pressure,
     against which the wave has to pump. body.gravity adds to it. Both together stand for a pressure rise over a
     wavelength of N m (-g) lambda/(L pi a^2). (Unit: d t^-2.)"""
-    body_gravity: Sequence[float]
+    body_gravity: Sequence[float] | npt.NDArray[Any]
     cohesion_range: float
     """contact.cohesion_range. Gap between surfaces at which linear cohesion ends; 0: it acts between spheres that
     overlap. (Unit: d.)"""
@@ -100,7 +103,7 @@ class Keywords(TypedDict, total=False):
     least. (Unit: d.)"""
     diameter_spread: float
     """grains.diameter_spread. Standard deviation of ln d of lognormal diameters. (A pure number.)"""
-    diameters: Sequence[float]
+    diameters: Sequence[float] | npt.NDArray[Any]
     """grains.diameters. Diameters under sizes = "table". (Unit: d.)"""
     direction: Literal["forward", "backward"]
     """drive.direction. Which way the wave runs: forward is towards -z under strain control and towards +z under
@@ -122,13 +125,13 @@ class Keywords(TypedDict, total=False):
     drive_edge: float
     drive_fall: float
     drive_force_amplitude: float
-    drive_order: Sequence[int]
-    drive_phases: Sequence[float]
-    drive_radii: Sequence[float]
+    drive_order: Sequence[int] | npt.NDArray[Any]
+    drive_phases: Sequence[float] | npt.NDArray[Any]
+    drive_radii: Sequence[float] | npt.NDArray[Any]
     drive_ramp_periods: float
     drive_rise: float
     drive_schedule: Literal["sudden", "ramp"] | Mapping[str, Any] | Sequence[Mapping[str, Any]]
-    drive_segments: int
+    drive_segments: SupportsIndex
     drive_strain_rate: float
     drive_table: str
     drive_wave_speed: float
@@ -150,7 +153,7 @@ class Keywords(TypedDict, total=False):
     force_amplitude: float
     """drive.force_amplitude. Amplitude f^P of the radial force on each wall sphere; stress control. (Unit: m d
     t^-2.)"""
-    fractions: Sequence[float]
+    fractions: Sequence[float] | npt.NDArray[Any]
     """grains.fractions. Part of the grains, by number, of each of the diameters; they need not add up to 1. (A pure
     number.)"""
     grain_diameter: float
@@ -160,19 +163,19 @@ class Keywords(TypedDict, total=False):
     grains_diameter_median: float
     grains_diameter_min: float
     grains_diameter_spread: float
-    grains_diameters: Sequence[float]
+    grains_diameters: Sequence[float] | npt.NDArray[Any]
     grains_file: str
     """grains.file. Table of the diameters under sizes = "table", instead of diameters and fractions: CSV with the
     columns diameter and fraction (by number), one size per line. Its path is relative to the configuration file,
     with --set to where the program runs."""
-    grains_fractions: Sequence[float]
+    grains_fractions: Sequence[float] | npt.NDArray[Any]
     grains_large_fraction: float
     grains_large_volume_fraction: float
-    grains_number: int
+    grains_number: SupportsIndex
     grains_number_density: float
     grains_sizes: Literal["uniform", "lognormal", "two", "table"]
     grains_volume_fraction: float
-    gravity: Sequence[float]
+    gravity: Sequence[float] | npt.NDArray[Any]
     """body.gravity. Gravity [x, y, z] on the grains. z is the tube's axis, whichever way the wave runs; x and y lie
     across it: [0, -0.001, 0] is a horizontal tube, [0, 0, -0.001] an upright one. The wall has no weight.
     drive.body_force adds to it; units.acceleration gives it in SI. (Unit: d t^-2.)"""
@@ -188,7 +191,7 @@ class Keywords(TypedDict, total=False):
     inlet_head: float
     inlet_length: float
     inlet_velocity: float
-    inlet_waiting: int
+    inlet_waiting: SupportsIndex
     integrator: Literal["verlet", "adams_bashforth"]
     """run.integrator. How the equations of motion are stepped."""
     kernel: Literal["fast", "reference"]
@@ -228,37 +231,37 @@ class Keywords(TypedDict, total=False):
     """contact.normal_damping. Damping eta of the linear law. (Unit: m t^-1.)"""
     normal_stiffness: float
     """contact.normal_stiffness. Stiffness k of the linear law, f_n = k xi - eta v_n. (Unit: m t^-2.)"""
-    number: int
+    number: SupportsIndex
     """grains.number. Number of grains N in the whole tube. (A pure number.)"""
     number_density: float
     """grains.number_density. Number density n = N d*^3/(pi a^2 L), d* the largest grain diameter; N is rounded to
     the nearest whole number. (A pure number.)"""
     observe_late_fraction: float
-    observe_profile_bins: int
-    observe_samples_per_period: int
+    observe_profile_bins: SupportsIndex
+    observe_samples_per_period: SupportsIndex
     observe_transition_threshold: float
-    order: Sequence[int]
+    order: Sequence[int] | npt.NDArray[Any]
     """drive.order. The segments in the order in which they close, counted from 1 along the wave, each once;
     waveform = "segments". Default: one after the other along the wave. (A pure number.)"""
     periods: float
     """run.periods. Length of the run in periods of drive.strain_rate, rounded up to whole samples. Where a schedule
     changes the strain rate, the wave runs more or fewer wavelengths (column period). (Unit: periods.)"""
-    phases: Sequence[float]
+    phases: Sequence[float] | npt.NDArray[Any]
     """drive.phases. Phases of the points of waveform = "table" in cycles, ascending from 0 on; 3 to 128 of them. (A
     pure number.)"""
-    places: Sequence[float]
+    places: Sequence[float] | npt.NDArray[Any]
     """tube.places. Place z of each wall sphere along the tube, from 0 to below L; under arrangement = "file".
     (Unit: d.)"""
     poisson_ratio: float
     """contact.poisson_ratio. Poisson's ratio nu of the Hertz law. (A pure number.)"""
-    profile_bins: int
+    profile_bins: SupportsIndex
     """observe.profile_bins. Bins of the profiles over one wavelength. The largest pressure on the wall is the
     largest of any bin: it grows with the number of bins. (A pure number.)"""
     pull_off: Literal["displacement", "force"]
     """contact.pull_off. Where the neck of a JKR contact breaks."""
     radial: float
     """wall.keep.radial. Stiffness of the radial tether of a wall sphere to its place. (Unit: m t^-2.)"""
-    radii: Sequence[float]
+    radii: Sequence[float] | npt.NDArray[Any]
     """drive.radii. Radius at each phase. Only the shape counts: the largest becomes tube.radius, the least half of
     drive.width. (A pure number.)"""
     radius: float
@@ -275,7 +278,7 @@ class Keywords(TypedDict, total=False):
     """contact.restitution_speed. Relative speed at which restitution holds under the Hertz law. Default: the speed
     of the wave. Give it in a study of several strain rates, or each has its own material. A static wave needs it.
     (Unit: d t^-1.)"""
-    rings_per_wave: int
+    rings_per_wave: SupportsIndex
     """tube.rings_per_wave. Rings in a wavelength. Staggered rings under strain control need an even number; under
     stress control an odd number needs an even number of waves. Random and disordered walls have as many spheres as
     so many rings would have; a wall from a file does not use it. 0 in a smooth wall, where it is not given. (A pure
@@ -297,9 +300,9 @@ class Keywords(TypedDict, total=False):
     run_kernel: Literal["fast", "reference"]
     run_neighbour_skin: float
     run_periods: float
-    run_seed: int
+    run_seed: SupportsIndex | np.random.Generator
     run_time_step: float
-    samples_per_period: int
+    samples_per_period: SupportsIndex
     """observe.samples_per_period. Samples of the time series in one period of the wave; with a static wave, 200 in
     the whole run. Beyond 262,144 samples every two neighbours become one, so that memory is bounded. (A pure
     number.)"""
@@ -308,10 +311,10 @@ class Keywords(TypedDict, total=False):
     grows from nothing within ramp_periods. Or a table such as { form = "ramp", parameter = "width", from = 3.0, to
     = 2.6, end = 100 } or { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }; with form =
     "course" straight lines lead from value to value. Or a list of such tables, one for each parameter."""
-    seed: int
+    seed: SupportsIndex | np.random.Generator
     """run.seed. Seed of the random numbers of the grains: their places, diameters, initial temperature and choice
     of place at an inlet. (A pure number.)"""
-    segments: int
+    segments: SupportsIndex
     """drive.segments. Number n of segments in a wavelength; waveform = "segments". (A pure number.)"""
     sizes: Literal["uniform", "lognormal", "two", "table"]
     """grains.sizes. How diameters are distributed, by number, from diameter_min to diameter_max."""
@@ -324,7 +327,7 @@ class Keywords(TypedDict, total=False):
     offset, and may be 0. (Unit: d.)"""
     sphere_mass: float
     """wall.sphere_mass. Mass of a wall sphere; stress control. (Unit: m.)"""
-    spheres_per_ring: int
+    spheres_per_ring: SupportsIndex
     """tube.spheres_per_ring. Wall spheres in a ring; 0 in a smooth wall, where it is not given. (A pure number.)"""
     spring_damping: float
     """wall.spring_damping. Damping of each spring along its length; stress control. (Unit: m t^-1.)"""
@@ -364,21 +367,21 @@ class Keywords(TypedDict, total=False):
     """observe.transition_threshold. J/Jmax that the average over a period crosses at a transition. From rest
     (J/Jmax = 0) it is crossed upward, or downward if it is below 0; from jammed (J/Jmax = 1) downward, or upward if
     it is above 1. (A pure number.)"""
-    tube_angles: Sequence[float]
+    tube_angles: Sequence[float] | npt.NDArray[Any]
     tube_arrangement: Literal["staggered", "aligned", "random", "disordered", "file", "smooth"]
-    tube_arrangement_seed: int
+    tube_arrangement_seed: SupportsIndex
     tube_ends: Literal["periodic", "open"]
     tube_file: str
     """tube.file. Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the
     columns angle (rad) and place (d), one sphere per line. Its path is relative to the configuration file, with
     --set to where the program runs."""
-    tube_places: Sequence[float]
+    tube_places: Sequence[float] | npt.NDArray[Any]
     tube_radius: float
-    tube_rings_per_wave: int
-    tube_spheres_per_ring: int
+    tube_rings_per_wave: SupportsIndex
+    tube_spheres_per_ring: SupportsIndex
     tube_wavelength: float
-    tube_waves: int
-    units_acceleration: Sequence[float]
+    tube_waves: SupportsIndex
+    units_acceleration: Sequence[float] | npt.NDArray[Any]
     units_cohesion_force: float
     """units.cohesion_force. The force that parts two grains of diameter 1 under linear cohesion, instead of
     contact.cohesion_force. (Unit: N.)"""
@@ -402,7 +405,7 @@ class Keywords(TypedDict, total=False):
     volume_fraction: float
     """grains.volume_fraction. Volume fraction rho = N d^3/(6 a^2 L) of grains in a straight tube of radius a and
     length L, d^3 averaged over the diameters; N is rounded to the nearest whole number. (A pure number.)"""
-    waiting: int
+    waiting: SupportsIndex
     """inlet.waiting. How many of the grains wait outside at t = 0. Those that are packed into the gap of 4
     diameters between the ends wait as well. (A pure number.)"""
     wall_contact_range: float
@@ -426,7 +429,7 @@ class Keywords(TypedDict, total=False):
     """drive.waveform. Shape of the wave."""
     wavelength: float
     """tube.wavelength. Wavelength lambda. (Unit: d.)"""
-    waves: int
+    waves: SupportsIndex
     """tube.waves. Number of waves in the tube; its length is L = waves * wavelength. (A pure number.)"""
     width: float
     """drive.width. Width of the bottleneck w = 2 (a - b) between the centres of wall spheres, at most 2 a; strain
