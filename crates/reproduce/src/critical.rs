@@ -158,6 +158,11 @@ fn columns(rows: &[Row<'_>], threshold: f64) -> (Vec<f64>, Vec<Transition>) {
 }
 
 impl<'a> Line<'a> {
+    /// rho; NaN without runs.
+    pub(crate) fn volume_fraction(&self) -> f64 {
+        self.rows.first().map_or(f64::NAN, Row::volume_fraction)
+    }
+
     fn new(strain_rate: f64, threshold: f64, rows: Vec<Row<'a>>) -> Self {
         let (width, transitions) = columns(&rows, threshold);
         let mut line = Self {

@@ -20,6 +20,8 @@ struct Kind<'a> {
     /// J/Jmax just beyond the jump, and [`BELOW_THE_JUMP`].
     slow_flow: Uncertain,
     fast_flow: Uncertain,
+    /// Contacts of a grain in that fast flow.
+    contacts: Option<Uncertain>,
     /// Whether J/Jmax comes near 1 at some width below the jump.
     comes_near: bool,
 }
@@ -42,12 +44,14 @@ impl<'a> AtRate<'a> for Kind<'a> {
         let mut points = branch.points.iter();
         let is_below = |point: &&Point<'_>| point.control <= before - BELOW_THE_JUMP;
         let is_near = |point: &Point<'_>| point.control <= before && point.flow.value >= NEAR_ONE;
+        let fast_point = points.clone().rfind(is_below)?;
         Some(Self {
             comes_near: points.clone().any(is_near),
             runs: rows.len(),
             slow: fraction(true),
             fast: fraction(false),
-            fast_flow: points.clone().rfind(is_below)?.flow,
+            fast_flow: fast_point.flow,
+            contacts: fast_point.mean("contacts"),
             slow_flow: points.find(|point| point.control >= after)?.flow,
             branch,
         })
@@ -76,6 +80,12 @@ impl Kind<'_> {
         self.has_two() && self.comes_near && !self.holds()
     }
 
+    /// Whether it holds with grains that F9 does not count as jammed.
+    fn coasts(&self) -> bool {
+        let touches_little = |contacts: Uncertain| contacts.value < LEAST_CONTACTS;
+        self.holds() && self.contacts.is_some_and(touches_little)
+    }
+
     fn row(wall: &str, one: &Shown<Self>) -> Vec<String> {
         let kind = &one.found;
         vec![
@@ -94,14 +104,16 @@ impl Kind<'_> {
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let walls = OnWall::<Kind<'_>>::all(evidence)?;
     let (mut draft, mut parts, mut rows) = (Draft::of(PROSE), Vec::new(), Vec::new());
-    let mut farther = Vec::new();
+    let (mut farther, mut coasting) = (Vec::new(), Vec::new());
     for one in &walls {
         let rates = one.rates(|kind| Some(kind.holds()));
-        let those = one.tight().filter(|kind| kind.found.holds_farther());
-        let those = listed(those.map(|kind| kind.strain_rate));
-        if !those.is_empty() {
-            farther.push(PROSE.text("place", values!(wall = one.name, those)));
-        }
+        let place = |is_meant: fn(&Kind<'_>) -> bool| {
+            let those = one.tight().filter(|kind| is_meant(&kind.found));
+            let those = listed(those.map(|kind| kind.strain_rate));
+            (!those.is_empty()).then(|| PROSE.text("place", values!(wall = one.name, those)))
+        };
+        farther.extend(place(|kind| kind.holds_farther()));
+        coasting.extend(place(|kind| kind.coasts()));
         let count = PROSE.text("count", values!(count = rates.count()));
         parts.push(one.part(rates.hold(), count, rates.in_words()));
         rows.extend(one.all.iter().map(|kind| Kind::row(&one.name, kind)));
@@ -123,6 +135,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if !farther.is_empty() {
         let places = farther.join("; ");
         draft.weakness("farther", values!(below, near, places));
+    }
+    if !coasting.is_empty() {
+        let (contacts, coasting) = (LEAST_CONTACTS, coasting.join("; "));
+        draft.weakness("coasting", values!(contacts, coasting));
     }
     in_time(&mut draft, evidence.study("flow-in-time")?)?;
     draft.finding.figures.push(snapshots()?);

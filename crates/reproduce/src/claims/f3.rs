@@ -59,7 +59,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         rows.extend(known.iter().map(row));
         let at = DISTANCES.map(|distance| power_at(&one, distance));
         windows.push([vec![wall.clone()], at.map(cell).to_vec()].concat());
-        powers.extend(at.into_iter().flatten().map(|power| power.value));
+        powers.extend(at.into_iter().flatten());
         let words = PROSE.text("number", values!(power = cell(power)));
         let why = cell_of(collapsed.as_ref(), |collapsed| {
             let (found, chance) = (collapsed.in_words(), collapsed.chance());
@@ -78,9 +78,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(judgement.statistics));
     }
     let summary = PROSE.text("summary", &[]);
-    if let Some((least, most)) = ends(powers.into_iter()) {
+    powers.sort_by(|one, other| one.value.total_cmp(&other.value));
+    if let (Some(least), Some(most)) = (powers.first(), powers.last()) {
         let [nearest, farthest] = [DISTANCES[DISTANCES.len() - 1], DISTANCES[0]];
-        let [least, most] = [least, most].map(|power| number(power, 1));
         draft.paragraph("everywhere", values!(nearest, farthest, least, most));
     }
     draft.table("amplitudes", &[], rows);

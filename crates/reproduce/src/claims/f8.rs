@@ -7,8 +7,10 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f8.md"));
 
+const STUDIES: &[&str] = &["density-*", "divergence-*", "near-*", "branches-*"];
+
 pub(super) const CLAIM: Claim =
-    Claim::new("F8", PROSE, &["density-*"], examine).varying("width", F8_NEEDED);
+    Claim::new("F8", PROSE, STUDIES, examine).varying("width", F8_NEEDED);
 
 /// What the source says of the transition time.
 const EXPONENT: f64 = 1.0;
@@ -16,6 +18,7 @@ const EXPONENT: f64 = 1.0;
 /// One density.
 struct Density<'a> {
     fraction: f64,
+    strain_rate: f64,
     branch: Branch<'a>,
     critical: Option<Uncertain>,
     /// The laws of the transition time next to w_c.
@@ -36,12 +39,24 @@ impl<'a> Density<'a> {
         let critical = crossing(rows).map(|found| found.width).or_else(bracket);
         Self {
             fraction: rows[0].volume_fraction(),
+            strain_rate: rows[0].strain_rate(),
             critical,
             escaped: leak(rows, critical.map(|width| width.value)),
             near: Line::at_own_threshold(rows).and_then(|line| Near::of(&line)),
             flow: compared.map(|point| point.flow),
             statistics: branch.statistics(rows.len()),
             branch,
+        }
+    }
+
+    /// Takes over the laws of F2, whose widths lie nearer to w_c, at the density and strain rate that it has.
+    fn take_over(&mut self, lines: &OnWall<Line<'_>>) {
+        let is_same = |line: &&Line<'_>| {
+            line.strain_rate == self.strain_rate && line.volume_fraction() == self.fraction
+        };
+        let mut lines = lines.tight().map(|shown| &shown.found);
+        if let Some(near) = lines.find(is_same).and_then(|line| line.near.clone()) {
+            self.near = Some(near);
         }
     }
 
@@ -93,6 +108,8 @@ struct Judged {
     /// d w_c/d rho, and the range of 2a − w_c over its mean.
     change: Option<Uncertain>,
     relative_change: f64,
+    /// Range of w_c over its mean.
+    change_of_width: f64,
     /// Densities at which alpha = 1 next to w_c.
     linear: Rates,
     exponent: Option<Uncertain>,
@@ -108,9 +125,11 @@ impl Judged {
         let [fraction, width, error] = columns(critical, 0.0);
         let line = fit_line_to_scatter(&fraction, &width, &error).ok();
         let diameter = densities[0].diameter();
-        let distances = width.iter().map(|width| diameter - width);
-        let mean = distances.clone().sum::<f64>() / width.len().max(1) as f64;
-        let relative = |(least, largest): (f64, f64)| (largest - least) / mean;
+        let relative = |from: &dyn Fn(f64) -> f64| {
+            let values = width.iter().map(|width| from(*width));
+            let mean = values.clone().sum::<f64>() / width.len().max(1) as f64;
+            ends(values).map_or(0.0, |(least, largest)| (largest - least) / mean)
+        };
         let linear = densities.iter().map(|density| {
             let near = density.near.as_ref();
             let holds = near.and_then(|near| near.is_linear(|one| agrees(one, EXPONENT)));
@@ -120,7 +139,8 @@ impl Judged {
         Self {
             slower: flows.map(|flows| flows.windows(2).all(falls)),
             change: line.map(|line| line.line.slope),
-            relative_change: ends(distances).map_or(0.0, relative),
+            relative_change: relative(&|width| diameter - width),
+            change_of_width: relative(&|width| width),
             linear: Rates::of(linear),
             exponent: weighted_mean(&exponents.collect::<Vec<_>>()),
         }
@@ -137,7 +157,9 @@ impl Judged {
 
     fn number(&self) -> String {
         let change = number(100.0 * self.relative_change, 0);
-        PROSE.text("number", values!(change, exponent = cell(self.exponent)))
+        let of_width = number(100.0 * self.change_of_width, 1);
+        let exponent = cell(self.exponent);
+        PROSE.text("number", values!(change, of_width, exponent))
     }
 
     fn why(&self) -> String {
@@ -165,8 +187,14 @@ impl Judged {
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut parts = Vec::new();
     let (mut draft, mut rows, mut panels) = (Draft::of(PROSE), Vec::new(), Vec::new());
+    let lines = OnWall::<Line<'_>>::all(evidence)?;
     for wall in WALLS {
-        let densities = Density::all_of(wall.rows("density", evidence));
+        let mut densities = Density::all_of(wall.rows("density", evidence));
+        if let Some(lines) = lines.iter().find(|lines| lines.name == wall.name()) {
+            densities
+                .iter_mut()
+                .for_each(|density| density.take_over(lines));
+        }
         if densities.is_empty() {
             continue;
         }

@@ -49,6 +49,15 @@ impl Outcomes {
         possible.map(with).sum::<f64>() / choose(rests + jams, all)
     }
 
+    /// The same runs as they would differ most by their start.
+    fn parted(&self) -> Self {
+        Self {
+            rest: [0, self.rest[1]],
+            jammed: [self.jammed[1]; 2],
+            ..*self
+        }
+    }
+
     /// Whether most runs that began jammed did not stay so.
     fn breaks_up(&self) -> bool {
         self.jammed[1] > 0 && 2 * self.jammed[0] < self.jammed[1]
@@ -120,20 +129,27 @@ impl Loop<'_> {
         compared.min_by(|one, other| one.probability().total_cmp(&other.probability()))
     }
 
+    /// Widths at which both starts have runs.
+    fn compared(&self) -> f64 {
+        let compared = self.outcomes.iter().filter(|one| one.is_compared());
+        compared.count() as f64
+    }
+
     /// Probability of [`Self::clearest`] among all widths that are compared.
     fn probability(&self) -> Option<f64> {
-        let number = self.outcomes.iter().filter(|one| one.is_compared()).count();
-        Some((self.clearest()?.probability() * number as f64).min(1.0))
+        Some((self.clearest()?.probability() * self.compared()).min(1.0))
     }
 
     /// Whether both flows exist at some width; not asked where the flow from rest does not jump, and not told where no width
-    /// just beyond the jump has runs from both starts.
+    /// just beyond the jump has so many runs from both starts that they could tell.
     fn is_bistable(&self) -> Option<bool> {
         let is_bistable = self.probability()? < ONE_FLOW_BY_CHANCE;
         let beyond = |one: &Outcomes| one.width - self.critical.value;
         let is_next = |one: &Outcomes| (0.0..=NEXT_TO_THE_FALL).contains(&beyond(one));
+        let could_tell =
+            |one: &Outcomes| one.parted().probability() * self.compared() < ONE_FLOW_BY_CHANCE;
         let mut compared = self.outcomes.iter().filter(|one| one.is_compared());
-        let is_told = is_bistable || compared.any(is_next);
+        let is_told = is_bistable || compared.any(|one| is_next(one) && could_tell(one));
         (self.jumps && is_told).then_some(is_bistable)
     }
 

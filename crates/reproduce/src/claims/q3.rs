@@ -162,7 +162,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     let rows = each().map(|(varied, one)| one.row(varied));
     draft.table("critical widths", &[], rows);
-    for (varied, one) in each() {
+    for (varied, one) in each().filter(|(_, one)| one.counts()) {
         let (varied, width) = (varied.name, one.crossing.width);
         let (value, speed) = (number(one.value, 3), number(one.wave_speed, 2));
         draft.quantity("critical width", values!(varied, value, speed), width);

@@ -91,7 +91,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.quantity("flow rate", values!(scene = name, runs), scene.flow);
     }
     let drifts = |scene: &&Scene<'_>| scene.rows.iter().any(|row| !row.is_stationary());
-    let drifting: Vec<String> = scenes.iter().filter(drifts).map(Scene::name).collect();
+    let drifting = scenes.iter().filter(drifts).map(|scene| {
+        let drifts = |row: &&Row<'_>| !row.is_stationary();
+        let number = scene.rows.iter().filter(drifts).count();
+        format!("{} in {number} of {} runs", scene.name(), scene.rows.len())
+    });
+    let drifting: Vec<String> = drifting.collect();
     if !drifting.is_empty() {
         let scenes = drifting.join(", ");
         draft.weakness("drifting", values!(scenes));

@@ -1,5 +1,7 @@
 //! S4: back flow at small forces.
 
+use peristalsis_analysis::number::counted;
+
 use super::elastic::*;
 use super::prelude::*;
 
@@ -105,13 +107,18 @@ fn summary(backward: &[&ForceLine<'_>], forward: &[&ForceLine<'_>]) -> String {
     let elsewhere = if forward.is_empty() {
         String::new()
     } else {
-        PROSE.text("elsewhere", values!(rates = rates(forward)))
+        let asked = |line: &&ForceLine<'_>| {
+            let (rate, forces) = (line.strain_rate, counted(forces(line).len(), "force"));
+            PROSE.text("asked", values!(rate, forces))
+        };
+        let rates: Vec<String> = forward.iter().map(asked).collect();
+        PROSE.text("elsewhere", values!(rates = rates.join(", ")))
     };
     PROSE.text("summary", values!(rates = words.join(", "), elsewhere))
 }
 
 /// Forces in words.
-fn range(forces: &[f64]) -> String {
+pub(super) fn range(forces: &[f64]) -> String {
     match forces {
         [] => "nowhere".to_owned(),
         [one] => format!("= {one}"),

@@ -2,7 +2,7 @@
 
 use super::elastic::*;
 use super::prelude::*;
-use super::s4::negative;
+use super::s4::{negative, range};
 
 const PROSE: Prose = Prose::new(include_str!("s5.md"));
 const STUDIES: &[&str] = &[
@@ -42,8 +42,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         (false, _) => Verdict::Open,
     };
     let statistics = together(tight.iter().copied());
-    let summary = summary(&counting, flows_back);
+    let summary = summary(&counting);
     let mut draft = Draft::of(PROSE);
+    if let Some((rate, point)) = smallest(&counting) {
+        let force = point.control;
+        draft.quantity("smallest", values!(rate, force), point.flow);
+    }
     let compared = pairs.iter().flat_map(compared);
     for (rate, without, with) in compared.filter(|(.., with)| with.flow.value < 0.0) {
         let (force, more) = (without.control, without.flow - with.flow);
@@ -51,6 +55,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.table("flows", &[], pairs.iter().flat_map(cells));
     draft.paragraph("method", values!(least = LEAST_BACK_FLOW));
+    if let Some((line, gap)) = both_flows(&counting) {
+        let (rate, force) = (line.strain_rate, gap.controls[0]);
+        let [rest, jammed] = line
+            .flow
+            .each()
+            .map(|branch| cell(branch.at(force).map(|it| it.flow)));
+        draft.paragraph("both", values!(force, rate, rest, jammed));
+    }
     if let Some(flows) = between_prescribed_walls(evidence)? {
         draft.weakness("prescribed", values!(flows));
     }
@@ -58,21 +70,46 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     Ok(draft.concluded(verdict, summary, statistics))
 }
 
-/// Whether any flow is negative, and the smallest of them.
-fn summary(tight: &[&ForceLine<'_>], flows_back: bool) -> String {
-    let points = || tight.iter().flat_map(|line| line.flow.points());
-    let smallest = tight
+/// The smallest flow, and its strain rate.
+fn smallest<'b, 'a>(tight: &[&'b ForceLine<'a>]) -> Option<(f64, &'b Point<'a>)> {
+    let lowest = tight
         .iter()
-        .filter_map(|line| Some((line.strain_rate, line.flow.lowest()?)))
-        .min_by(|one, other| one.1.flow.value.total_cmp(&other.1.flow.value));
-    smallest.map_or_else(
-        || "No stationary runs yet.".to_owned(),
-        |(rate, point)| {
-            let place = if flows_back { "somewhere" } else { "nowhere" };
-            let (means, smallest, force) = (points().count(), point.flow, point.control);
-            PROSE.text("summary", values!(place, means, smallest, force, rate))
-        },
-    )
+        .filter_map(|line| Some((line.strain_rate, line.flow.lowest()?)));
+    lowest.min_by(|one, other| one.1.flow.value.total_cmp(&other.1.flow.value))
+}
+
+/// The force at which both flows lie farthest apart, at the source's strain rate if they do there.
+fn both_flows<'b, 'a>(tight: &[&'b ForceLine<'a>]) -> Option<(&'b ForceLine<'a>, Step)> {
+    let apart = |line: &&'b ForceLine<'a>| {
+        let gap = line.flow.gap()?;
+        gap.counts(LEAST_JUMP).then_some((*line, gap))
+    };
+    let mut all: Vec<_> = tight.iter().filter_map(apart).collect();
+    all.sort_by(|one, other| other.1.height.value.total_cmp(&one.1.height.value));
+    let of_source = all
+        .iter()
+        .position(|(line, _)| line.strain_rate == SOURCE_RATE);
+    (!all.is_empty()).then(|| all.swap_remove(of_source.unwrap_or(0)))
+}
+
+/// Where the flow is negative, and the smallest.
+fn summary(tight: &[&ForceLine<'_>]) -> String {
+    let Some((rate, point)) = smallest(tight) else {
+        return "No stationary runs yet.".to_owned();
+    };
+    let place = |line: &&ForceLine<'_>| {
+        let forces = negative(line);
+        let rate = line.strain_rate;
+        (!forces.is_empty()).then(|| PROSE.text("negative", values!(forces = range(&forces), rate)))
+    };
+    let places: Vec<String> = tight.iter().filter_map(place).collect();
+    let place = match places.is_empty() {
+        true => "nowhere".to_owned(),
+        false => PROSE.text("places", values!(places = places.join("; "))),
+    };
+    let means = tight.iter().flat_map(|line| line.flow.points()).count();
+    let (smallest, force) = (point.flow, point.control);
+    PROSE.text("summary", values!(place, means, smallest, force, rate))
 }
 
 /// The smallest flow of frictionless grains in each tube of a prescribed wall in which one is negative, in words.
