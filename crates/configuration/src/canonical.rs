@@ -85,6 +85,11 @@ impl Configuration {
             let (path, value) = (entry.path(), bits(&entry.value));
             text += &format!("{path}={value}\n");
         }
+        // Every inlet was looked at so once.
+        let looks = self.looks_per_feeding();
+        if looks > 1 {
+            text += &format!("inlet.looks_per_feeding={looks}\n");
+        }
         for schedule in &self.drive.schedules {
             text += &format!("{}:", word(schedule.parameter));
             for (time, value) in schedule.knots() {

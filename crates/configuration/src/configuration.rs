@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use peristalsis_physics::contact::ContactModel;
-use peristalsis_physics::ends::{Ends, Inlet};
+use peristalsis_physics::ends::{Ends, Inlet, STEPS_PER_LOOK};
 use peristalsis_physics::method::{InitialState, Integrator, Kernel};
 use peristalsis_physics::wall::{
     Arrangement, Contraction, DriveAngle, ElasticNetwork, RadiusTable, SegmentDrive, Segments,
@@ -372,6 +372,9 @@ impl Default for Observe {
     }
 }
 
+/// Time from one filling of an inlet to the next where the wave stands \[t\].
+const TIME_TO_FILL: f64 = 2.0;
+
 impl Configuration {
     /// Volume fraction of a straight tube: rho = N d^3/(6 a^2 L), d^3 averaged.
     pub fn volume_fraction(&self) -> f64 {
@@ -446,6 +449,22 @@ impl Configuration {
     pub fn amplitude(&self) -> Option<f64> {
         let width = self.drive.own(ScheduledParameter::Width)?;
         Some(self.tube.radius - 0.5 * width)
+    }
+
+    /// Looks at the ends of an open tube from one at which the inlet fills up to the next: about the time in which the wave
+    /// runs one d, or 2 t where it stands, so that no result depends on the length of a step. 1 with a feed rate.
+    pub fn looks_per_feeding(&self) -> u64 {
+        let fills_up = self.inlet.is_some_and(|inlet| inlet.feed_rate.is_none());
+        let interval = match self.wave_speed() {
+            0.0 => TIME_TO_FILL,
+            speed => 1.0 / speed,
+        };
+        let looks = interval / (STEPS_PER_LOOK as f64 * self.run.time_step);
+        if fills_up {
+            looks.round().max(1.0) as u64
+        } else {
+            1
+        }
     }
 
     /// Speed of the wave at t = 0 \[d t^-1\]: a schedule may have led it away from [`wave_speed`](Self::wave_speed).

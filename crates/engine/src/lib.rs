@@ -24,7 +24,7 @@ mod wall_contacts;
 
 pub use bodies::{Bodies, Sphere};
 pub use contacts::Remembered;
-pub use ends::{Ends, OpenEnds, Passages, Passed, STEPS_PER_LOOK, TransitTimes};
+pub use ends::{Ends, OpenEnds, Passages, Passed, TransitTimes};
 pub use error::EngineError;
 pub use fast::machine::Instructions;
 pub use fast::threads::{SPHERES_OF_A_THREAD, processors, threads_that_pay};

@@ -6,7 +6,7 @@ mod common;
 
 use common::*;
 use peristalsis_engine::{OpenEnds, Passages};
-use peristalsis_physics::ends::Inlet;
+use peristalsis_physics::ends::{Inlet, STEPS_PER_LOOK};
 
 const GRAINS: usize = 150;
 const WAITING: usize = 40;
@@ -33,6 +33,17 @@ fn falling(
     friction: Option<CundallStrack>,
     kernel: Kernel,
 ) -> Simulation {
+    fed(heading, inlet, friction, kernel, 1)
+}
+
+/// The same, fed at every so many looks.
+fn fed(
+    heading: f64,
+    inlet: Inlet,
+    friction: Option<CundallStrack>,
+    kernel: Kernel,
+    looks_per_feeding: u64,
+) -> Simulation {
     let wall = tube(heading, 0.0);
     let bodies = packed(GRAINS, 0.8, &wall, LINEAR, 3);
     let parameters = Parameters {
@@ -44,6 +55,7 @@ fn falling(
         heading,
         inlet,
         seed: 5,
+        looks_per_feeding,
     };
     Simulation::new(bodies, wall, parameters)
         .open(ends, &[0.9; WAITING])
@@ -176,6 +188,32 @@ fn a_feed_rate_is_kept_and_who_runs_dry_is_told() {
 }
 
 #[test]
+fn an_inlet_without_a_feed_rate_fills_up_at_its_own_looks_alone() {
+    let put_in = |inlet: Inlet, looks: u64| {
+        let mut simulation = fed(1.0, inlet, None, Kernel::Fast, looks);
+        let mut at = Vec::new();
+        for look in 1..=12 {
+            let before = simulation.ends().unwrap().passages().fed.grains;
+            simulation.advance(STEPS_PER_LOOK).unwrap();
+            if simulation.ends().unwrap().passages().fed.grains > before {
+                at.push(look);
+            }
+        }
+        at
+    };
+    let third = put_in(inlet(), 3);
+    assert!(
+        !third.is_empty() && third.iter().all(|look| look % 3 == 0),
+        "{third:?}"
+    );
+    let steady = Inlet {
+        feed_rate: Some(2.0),
+        ..inlet()
+    };
+    assert!(put_in(steady, 3).iter().any(|look| look % 3 != 0));
+}
+
+#[test]
 fn grains_that_wait_do_no_work_and_go_nowhere() {
     let shut = Inlet {
         feed_rate: Some(0.0),
@@ -192,6 +230,7 @@ fn grains_that_wait_do_no_work_and_go_nowhere() {
             heading: 1.0,
             inlet: shut,
             seed: 5,
+            looks_per_feeding: 1,
         };
         let closed = Simulation::new(bodies, wall, parameters);
         closed.open(ends, more).unwrap()
@@ -229,6 +268,7 @@ fn a_wave_pumps_through_an_open_tube() {
         heading: 1.0,
         inlet: inlet(),
         seed: 5,
+        looks_per_feeding: 1,
     };
     let closed = Simulation::new(bodies, wall, parameters);
     let mut simulation = closed.open(ends, &[]).unwrap();

@@ -147,6 +147,7 @@ fn shut(heading: f64) -> OpenEnds {
             waiting: 0,
         },
         seed: 1,
+        looks_per_feeding: 1,
     }
 }
 

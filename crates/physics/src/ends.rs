@@ -31,6 +31,9 @@ pub fn gap(largest_diameter: f64) -> f64 {
     GAP * largest_diameter
 }
 
+/// Steps from one look at the ends of an open tube to the next.
+pub const STEPS_PER_LOOK: u64 = 20;
+
 /// The inlet of an open tube.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
@@ -42,7 +45,8 @@ pub struct Inlet {
     /// Length of the stretch in which grains are put in, at the end of the head that is farther from the outlet. Default: 3 largest diameters.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e9, "default" = null))]
     pub length: f64,
-    /// Grains put in per time, as far as there is place for them. Default: as many as there is place for.
+    /// Grains put in per time, as far as there is place for them. Default: as many as find a place each time that the wave has
+    /// run one d, or every 2 t where it stands.
     #[schemars(extend("x-unit" = "t^-1", "minimum" = 0, "maximum" = 1e9))]
     pub feed_rate: Option<f64>,
     /// Velocity towards the outlet with which grains are put in.

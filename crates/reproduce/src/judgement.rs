@@ -132,10 +132,7 @@ impl Judgement {
             };
             let why = match is_enough {
                 true => part.why,
-                false => format!(
-                    "too few runs or widths for a verdict; {}",
-                    part.why
-                ),
+                false => format!("too few runs or widths for a verdict; {}", part.why),
             };
             let (wall, number) = (part.wall, part.number);
             WallVerdict {

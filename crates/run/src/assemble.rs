@@ -88,6 +88,7 @@ fn opened(
         heading: configuration.heading(),
         inlet,
         seed: configuration.run.seed,
+        looks_per_feeding: configuration.looks_per_feeding(),
     };
     Ok(simulation.open(ends, waiting)?)
 }

@@ -28,6 +28,31 @@ fn an_open_tube_has_an_inlet_that_fills_it() {
     assert_ne!(plain.physics_hash(), open.physics_hash());
 }
 
+/// A pump engineer: the shorter the step, the more looks at the inlet, and the denser the filling, without end.
+#[test]
+fn an_inlet_fills_up_as_often_whatever_the_step() {
+    let looks = |name: &str, settings: &[&str]| preset(name, settings).looks_per_feeding();
+    // c = 0.2: 5 t, of looks 1, 0.5 and 0.25 t apart.
+    let slow = ["tube.ends=open", "drive.strain_rate=0.02"];
+    for (step, number) in [("0.05", 5), ("0.025", 10), ("0.0125", 20)] {
+        let step = format!("run.time_step={step}");
+        let settings: Vec<&str> = slow.iter().copied().chain([step.as_str()]).collect();
+        assert_eq!(looks("frictionless", &settings), number);
+    }
+    assert_eq!(
+        looks("frictionless", &["tube.ends=open", "drive.strain_rate=1"]),
+        1
+    );
+    assert_eq!(looks("frictionless", NO_OVERRIDES), 1);
+    // A wave that stands: 2 t.
+    assert_eq!(looks("silo", NO_OVERRIDES), 1);
+    assert_eq!(looks("silo", &["run.time_step=0.025"]), 4);
+    assert_eq!(
+        looks("silo", &["run.time_step=0.025", "inlet.feed_rate=1"]),
+        1
+    );
+}
+
 #[test]
 fn a_feed_in_kilograms_an_hour() {
     let open = preset("silo", &["units.feed_rate=36"]);

@@ -8,7 +8,7 @@ mod opening;
 mod transit_times;
 
 use glam::DVec3;
-use peristalsis_physics::ends::{Inlet, gap};
+use peristalsis_physics::ends::{Inlet, STEPS_PER_LOOK, gap};
 use rand_chacha::ChaCha8Rng;
 use rand_core::SeedableRng;
 
@@ -17,8 +17,6 @@ pub use self::transit_times::TransitTimes;
 use crate::bodies::Bodies;
 use crate::wall::Wall;
 
-/// Steps from one look at the ends of an open tube to the next.
-pub const STEPS_PER_LOOK: u64 = 20;
 /// Stream of the random numbers of the inlet.
 const STREAM: u64 = 11;
 /// Numbers that a look may draw: the looks of a run never share one.
@@ -37,6 +35,8 @@ pub struct OpenEnds {
     pub inlet: Inlet,
     /// Seed of the places where they are put.
     pub seed: u64,
+    /// Looks from one at which an inlet without a feed rate puts grains in to the next; 1 or more.
+    pub looks_per_feeding: u64,
 }
 
 /// Grains that passed, and their mass.
@@ -169,6 +169,14 @@ impl Ends {
         self.stations[grain].waits
     }
 
+    /// Steps from one look at which the inlet may put grains in to the next.
+    pub fn steps_per_feeding(&self) -> u64 {
+        match self.open.inlet.feed_rate {
+            Some(_) => STEPS_PER_LOOK,
+            None => STEPS_PER_LOOK * self.open.looks_per_feeding,
+        }
+    }
+
     /// Grains that wait outside.
     pub fn waiting(&self) -> usize {
         self.queue.len()
@@ -250,7 +258,8 @@ impl Ends {
     ) {
         let mut due = match self.open.inlet.feed_rate {
             Some(rate) => ((rate * time) as u64).saturating_sub(self.passages.fed.grains),
-            None => u64::MAX,
+            None if (step / STEPS_PER_LOOK).is_multiple_of(self.open.looks_per_feeding) => u64::MAX,
+            None => 0,
         };
         if due == 0 {
             return;

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 use core::ops::Deref;
 
-use peristalsis_analysis::mean_with_error;
+use peristalsis_analysis::{mean_with_error, variance};
 use peristalsis_configuration::{Configuration, ScheduledParameter};
 use peristalsis_observe::{AxialDispersion, ContactForces, PartOfWave, ProfileBin, Sample};
 
@@ -12,17 +12,14 @@ use crate::recorder::{Recorder, greatest_common_divisor};
 
 /// The late samples of a run, the last of all.
 ///
-/// Where the flow pulses with the wave, a part of a period would count as more or less flow, and the pulse as noise. From
-/// four whole late periods on they are therefore whole periods, and errors are from the averages of these.
+/// Where the flow pulses with the wave, a part of a period would count as more or less flow, and the pulse as noise. From one
+/// whole late period on they are therefore whole periods, and errors are from the averages of these, of two at least.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Late {
     samples: Vec<Sample>,
     /// Samples whose average counts as one number in errors.
     block: usize,
 }
-
-/// Fewest whole periods from which the error of a flow that pulses is taken.
-const LEAST_PERIODS: usize = 4;
 
 impl Late {
     /// Those of the last part of a record.
@@ -39,7 +36,8 @@ impl Late {
 
     fn in_blocks(late: &[Sample], block: usize) -> Self {
         let (samples, block) = match late.len() / block {
-            0..LEAST_PERIODS => (late, 1),
+            // Part of a period.
+            0 => (late, late.len().max(1)),
             whole => (&late[late.len() - whole * block..], block),
         };
         Self {
@@ -56,7 +54,11 @@ impl Late {
 
     /// Standard error of the mean of a number of each sample.
     pub(super) fn error_of(&self, values: &[f64]) -> f64 {
-        error_of(values.chunks(self.block).map(super::mean))
+        let averages: Vec<f64> = values.chunks(self.block).map(super::mean).collect();
+        match averages.len() {
+            number @ 2..4 if self.block > 1 => (variance(&averages) / number as f64).sqrt(),
+            _ => error_of(averages.into_iter()),
+        }
     }
 
     /// A number of each sample in the first half and in the second, of whole blocks.
@@ -335,9 +337,16 @@ mod tests {
         let flows: Vec<f64> = late.iter().map(flow).collect();
         let (first, second) = late.halves(&flows);
         assert_eq!((first.len(), second.len()), (12, 15));
-        // Of fewer than four periods all samples count, each for itself.
+        // The error of few periods is that of their averages: 12, 14 and 12, of one it is not known.
         let late = Late::in_blocks(&whole[whole.len() - 11..], 3);
-        assert_eq!((late.len(), late.block), (11, 1));
+        let (mean, error) = late.measured(flow);
+        assert_eq!(late.len(), 9);
+        assert!((mean - 38.0 / 3.0).abs() < 1e-12 && (error - 2.0 / 3.0).abs() < 1e-12);
+        for number in [5, 2] {
+            let late = Late::in_blocks(&whole[whole.len() - number..], 3);
+            assert_eq!(late.len(), number.min(3));
+            assert!(late.measured(flow).1.is_nan());
+        }
     }
 
     #[test]

@@ -3,8 +3,6 @@
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_physics::wall::Arrangement;
 
-use peristalsis_engine::STEPS_PER_LOOK;
-
 use super::softness::{LARGEST_OVERLAP, Material};
 use super::threshold;
 use super::warning::Warning;
@@ -37,6 +35,7 @@ pub(super) fn warnings(run: &Run) -> Vec<Warning> {
     warnings.extend(unaccounted(run));
     warnings.extend(threshold::missed(run));
     warnings.extend(ran_dry(run));
+    warnings.extend(fed_less(run));
     warnings
 }
 
@@ -100,13 +99,30 @@ fn unaccounted(run: &Run) -> Option<Warning> {
     is_told.then_some(Warning { key, message })
 }
 
+/// Part of the feed rate that an inlet takes at least, unless there was no place.
+const FED: f64 = 0.9;
+
+/// That the inlet could not put in as many grains as asked for, though they waited.
+fn fed_less(run: &Run) -> Option<Warning> {
+    let (ends, time) = (run.simulation().ends()?, run.simulation().time());
+    let rate = run.configuration().inlet?.feed_rate?;
+    let found = ends.passages().fed.grains as f64 / time;
+    let message = format!(
+        "the inlet put in {found:.3} grains a time, and not {rate:.3}: there was no place for more; take a longer inlet.length, a larger \
+         inlet.velocity or a faster wave"
+    );
+    let key = "inlet.feed_rate";
+    let is_less = rate * time > 10.0 && found < FED * rate && ends.waiting() > 0;
+    is_less.then_some(Warning { key, message })
+}
+
 /// Part of the looks at the inlet at which none waited, above which the inlet counts as dry.
 const DRY: f64 = 0.02;
 
 /// That the inlet would have put in grains, and none waited.
 fn ran_dry(run: &Run) -> Option<Warning> {
     let ends = run.simulation().ends()?;
-    let steps = ends.passages().starved as f64 * STEPS_PER_LOOK as f64;
+    let steps = (ends.passages().starved * ends.steps_per_feeding()) as f64;
     let part = steps / run.simulation().step().max(1) as f64;
     let message = format!(
         "for {:.0} % of the time the inlet had place for a grain, and none waited outside: the tube holds all {} grains, and \

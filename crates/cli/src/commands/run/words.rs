@@ -69,7 +69,7 @@ fn transition(run: &Run, summary: &Summary) -> String {
             periods(summary.time)
         ),
         None if !has_three_averages(run) => format!(
-            "no transition can be told: J/Jmax is not known in {CONFIRMATION_PERIODS} periods in a row"
+            "no transition can be told: J/Jmax is never known for {CONFIRMATION_PERIODS} periods in a row"
         ),
         None => format!("no transition within {} periods", periods(summary.time)),
     }
