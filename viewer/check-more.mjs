@@ -26,7 +26,7 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     await page.waitForTimeout(400);
     assert.equal(await page.inputValue("#number-width"), "2.400");
     // A comma is a point; what is out of range, or no number, is told.
-    for (const [typed, taken, told] of [["2,5", "2.500", null], ["25", "3.000", /Width w \/ d: 25 is outside 1\.6 to 3, and 3\.000 is taken/], ["wide", "3.000", /“wide” is no number/], ["2.4", "2.400", null]]) {
+    for (const [typed, taken, told] of [["2,5", "2.500", null], ["25", "3.000", /Width w \/ d: 25 is outside 1\.6 to 3, and 3 is taken/], ["wide", "3.000", /“wide” is no number/], ["2.4", "2.400", null]]) {
       await page.click("#number-width");
       await page.fill("#number-width", "");
       await page.keyboard.type(typed);

@@ -168,6 +168,8 @@ async function checkDriving(browser) {
   const folder = command.replace("peristalsis run --resume ", "");
   assert.match(readFileSync(join(folder, "config.toml"), "utf8"), /\[tube\]/);
   await shoot(page, "saved");
+  const [file] = await Promise.all([page.waitForEvent("download"), page.click("#saved-toml")]);
+  assert.match(file.suggestedFilename(), /\.toml$/);
   await close();
   end();
 }

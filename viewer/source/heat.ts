@@ -70,6 +70,7 @@ export function drawHeat(chart: Chart, points: Point[], rows: (Value | null)[], 
     const colour = colourAt(LIGHTNESS, placeIn(scale, point.value));
     context.fillStyle = css(colour);
     context.fillRect(left + 0.5, top + 0.5, Math.max(1, width - 1), Math.max(1, high - 1));
+    if (point.atLeast) hatch(context, left + 0.5, top + 0.5, Math.max(1, width - 1), Math.max(1, high - 1), light(colour) > 0.19 ? "#10141c66" : "#ffffff66");
     const text = (point.atLeast ? "≥ " : "") + short(point.value);
     context.font = "11px system-ui, sans-serif";
     // All numbers or none: short ones alone would look like the only ones.
@@ -96,6 +97,23 @@ export function drawHeat(chart: Chart, points: Point[], rows: (Value | null)[], 
     context.strokeRect(cell.left + 1, cell.top + 1, cell.width - 2, cell.height - 2);
   }
   return cells;
+}
+
+/** Lines across a cell whose value is a lower limit. */
+function hatch(context: Chart["context"], left: number, top: number, width: number, height: number, colour: string): void {
+  context.save();
+  context.beginPath();
+  context.rect(left, top, width, height);
+  context.clip();
+  context.beginPath();
+  for (let from = left - height; from < left + width; from += 7) {
+    context.moveTo(from, top + height);
+    context.lineTo(from + height, top);
+  }
+  context.lineWidth = 1;
+  context.strokeStyle = colour;
+  context.stroke();
+  context.restore();
 }
 
 const short = (value: number) => {

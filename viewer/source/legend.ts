@@ -10,7 +10,7 @@ function head(box: HTMLElement, text: string): void {
 }
 
 /** The colours of a map. */
-export function showScale(box: HTMLElement, value: string, { from, to, logarithmic }: Scale): void {
+export function showScale(box: HTMLElement, value: string, { from, to, logarithmic }: Scale, limits: boolean): void {
   head(box, value);
   const bar = document.createElement("div");
   bar.className = "bar";
@@ -20,6 +20,11 @@ export function showScale(box: HTMLElement, value: string, { from, to, logarithm
   const middle = logarithmic ? Math.sqrt(from * to) : 0.5 * (from + to);
   ends.append(...[from, middle, to].map((end) => Object.assign(document.createElement("span"), { textContent: written(end) })));
   box.append(bar, ends);
+  if (limits) note(box, "hatched: at least this, for runs ended before their transition");
+}
+
+function note(box: HTMLElement, text: string): void {
+  box.append(Object.assign(document.createElement("div"), { className: "item note", textContent: text }));
 }
 
 /** The marks of a family, and the lines of both starts where there are both. */
@@ -41,11 +46,7 @@ export function showMarks(box: HTMLElement, family: string, curves: Curve[], lim
     if (style) item(typeof member === "number" ? written(member) : member, { ...style, open: !both && style.open });
   }
   if (both) for (const start of starts) item(`from ${start}`, { colour: ink().text, mark: 0, open: start === "jammed" });
-  if (!limits) return;
-  const note = document.createElement("div");
-  note.className = "item note";
-  note.textContent = "↑ at least: runs ended before their transition";
-  box.append(note);
+  if (limits) note(box, "↑ at least: runs ended before their transition");
 }
 
 /** A mark on a piece of its line. */

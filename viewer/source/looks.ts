@@ -30,6 +30,9 @@ export function listenToLooks(field: string, looks: Looks): void {
   tick("follow", looks.follow);
 }
 
+/** Whether colours go from dark to light; without a scene, too. */
+export const isByLightness = (): boolean => element<HTMLInputElement>("lightness").checked;
+
 /** Offers the colours that there are: a recording has no contacts. */
 export function offer(field: string, recorded: boolean): void {
   const offered = Object.entries(FIELDS).filter(([, { ofContacts }]) => !(recorded && ofContacts));

@@ -8,7 +8,7 @@ import { Host, isHosted } from "./host";
 import { showHeading } from "./heading";
 import { listenToKeys } from "./keys";
 import { element, isStillAsked, keepSaid, listenToDialogs, listenToLook, listenToSizes, say } from "./page";
-import { listenToLooks, offer } from "./looks";
+import { isByLightness, listenToLooks, offer } from "./looks";
 import { giveLoop } from "./loop";
 import { listenToPointers } from "./pointers";
 import { type Driven, type Frame, type Told, unitOfTime, type Welcome } from "./protocol";
@@ -157,13 +157,15 @@ class Page {
   private open(tube: Welcome): void {
     const { recorded, rows } = tube;
     const film = recorded ? new Recording(recorded.clocks, (number) => this.connection.send({ type: "frame", number })) : new History();
-    this.playback.open(film, this.asked.jump);
+    this.playback.open(film, this.asked.jump ?? (recorded ? (this.asked.clock ?? undefined) : undefined));
+    if (recorded) delete this.asked.clock;
     if (recorded) element<HTMLInputElement>("time").max = String(Math.max(1, film.count - 1));
     this.film.addRows(rows);
     this.readout.spaceTime = new SpaceTime();
     this.shownFrame = null;
     this.chartsStale = true;
     document.body.dataset.recorded = String(recorded !== null);
+    element("sweep-published").hidden = tube.published === null;
     if (recorded && FIELDS[this.field].ofContacts) this.field = "axial";
     offer(this.field, recorded !== null);
     element("loop-name").textContent = isSteady(this.film, tube) ? insteadOfLoop(tube).name : recorded ? "The loop, as it was driven" : "The loop";
@@ -284,7 +286,7 @@ class Page {
     const force = this.scene?.contacts ? this.scene.forces.largest : null;
     const field = FIELDS[this.field];
     const isLacking = this.shownFrame !== null && lacks(field, this.shownFrame);
-    showField(field, isLacking, this.scene?.lightness ?? false, this.scene?.marks ?? false, force);
+    showField(field, isLacking, isByLightness(), this.scene?.marks ?? false, force);
   }
 
   /** Contacts are sent where something is made of them. */

@@ -75,7 +75,10 @@ export function listenToSizes(changed: () => void): void {
 /** Closes dialogs by their buttons and by a click beside them; the page's policy lets no form do it. */
 export function listenToDialogs(): void {
   for (const dialog of document.querySelectorAll("dialog")) {
-    dialog.onclick = (event) => event.target === dialog && dialog.close();
+    // An answer of false would keep links in it from being followed.
+    dialog.onclick = (event) => {
+      if (event.target === dialog) dialog.close();
+    };
     for (const button of dialog.querySelectorAll<HTMLButtonElement>("form button"))
       button.onclick = (event) => {
         event.preventDefault();

@@ -56,9 +56,11 @@ function between(points: [number, number][], x: number): number {
 /** At most some thousand points; none between two that are so far apart that rows between them were missed. */
 function sparse(points: [number, number][]): [number, number][] {
   const each = Math.ceil(points.length / 3000);
-  if (each > 1) return points.filter((_, index) => index % each === 0);
   const far = 1 + 0.003 * (points.at(-1)?.[0] ?? 0);
-  return points.flatMap((point, k): [number, number][] => (k > 0 && point[0] - points[k - 1][0] > far ? [[point[0], NaN], point] : [point]));
+  return points.flatMap((point, k): [number, number][] => {
+    const kept: [number, number][] = k % each === 0 ? [point] : [];
+    return k > 0 && point[0] - points[k - 1][0] > far ? [[point[0], NaN], point] : kept;
+  });
 }
 
 /** What is drawn where there is no loop: its name, the label of its axis, and where a row has it. */
@@ -190,7 +192,7 @@ let mapped: ImageData | null = null;
 /** The whole tube from end to end, with what is in the picture; `tones` are the grains' places on the scale of the field. */
 export function drawMap(
   canvas: HTMLCanvasElement, frame: Frame, tones: Float32Array, values: Field, tube: Welcome, lightness: boolean,
-  view: { middle: number; half: number }, colours: Ink,
+  view: { middle: number; half: number },
 ): void {
   const context = canvas.getContext("2d");
   // A small version of the page has none.
@@ -225,7 +227,8 @@ export function drawMap(
   context.putImageData(image, 0, 0);
   const half = Math.min(0.5, view.half / tube.length);
   const centre = place(view.middle);
-  context.strokeStyle = colours.text;
+  // On the dark of the map, whatever the page is.
+  context.strokeStyle = "#e9eef6";
   context.lineWidth = 1.5;
   if (half < 0.49) {
     for (const turn of tube.open ? [0] : [-1, 0, 1])

@@ -3,6 +3,7 @@ import { FIELDS, partsOf } from "./fields";
 import type { Film } from "./film";
 import { drawFlat } from "./flat";
 import { acrossOf, drawLoop, wordsOf } from "./loop";
+import { isByLightness } from "./looks";
 import { element, fill } from "./page";
 import { drawFlow, drawInsteadOfLoop, drawMap, drawProfile } from "./plots";
 import { type Frame, unitOfTime, type Welcome } from "./protocol";
@@ -61,11 +62,11 @@ export class Readout {
     element("profile-of").textContent = drawProfile(charts.profile, film, index, tube, colours);
     const isLong = tube.waves >= FEWEST_WAVES && !tube.recorded;
     element("space-time-figure").hidden = !isLong;
-    const lightness = scene?.lightness ?? false;
+    const lightness = isByLightness();
     if (isLong) this.spaceTime.draw(charts.spaceTime, tube, lightness, colours);
     const view = scene ? { middle: scene.middle, half: scene.halfShown() / 1.1 } : { middle: 0, half: tube.length };
     const tones = scene?.values ?? partsOf(FIELDS[shown.field], frame, tube);
-    drawMap(element<HTMLCanvasElement>("map"), frame, tones, FIELDS[shown.field], tube, lightness, view, colours);
+    drawMap(element<HTMLCanvasElement>("map"), frame, tones, FIELDS[shown.field], tube, lightness, view);
     if (!scene) drawFlat(element<HTMLCanvasElement>("stage"), frame, tones, FIELDS[shown.field], tube, lightness, colours);
     this.showNumbers(shown, now);
   }

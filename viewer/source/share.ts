@@ -1,6 +1,7 @@
 import type { Connection } from "./connection";
-import { element } from "./page";
+import { element, say } from "./page";
 import type { Course, Turn } from "./protocol";
+import { NAMES } from "./sliders";
 
 /** What the address keeps of the page. */
 export interface Link {
@@ -41,6 +42,11 @@ export function readLink(): Partial<Link> {
   }
   const turns = (parts.get("turns") ?? "").split(",").filter(Boolean).map((turn) => turn.split(":"));
   link.turns = turns.map(([at, parameter, value]) => [Number(at), parameter, Number(value)] as Turn);
+  const isWhole = ([at, parameter, value]: Turn) => Number.isFinite(at) && parameter in NAMES && Number.isFinite(value);
+  if (!link.turns.every(isWhole)) {
+    [link.turns, link.step] = [[], undefined];
+    say("This link is damaged: how its tube was steered cannot be read. The tube begins anew.", true);
+  }
   return link;
 }
 

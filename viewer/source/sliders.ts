@@ -1,7 +1,8 @@
 import { element, say } from "./page";
 import type { Driven, Steered, Welcome } from "./protocol";
 
-const NAMES: Record<Steered, { name: string; digits: number }> = {
+/** What a run can be steered by. */
+export const NAMES: Record<Steered, { name: string; digits: number }> = {
   width: { name: "Width <i>w</i> / <i>d</i>", digits: 3 },
   force_amplitude: { name: "Force amplitude <i>f</i><sup>P</sup> / (m d/t²)", digits: 5 },
   strain_rate: { name: "Strain rate <i>ε̇</i> / t⁻¹", digits: 5 },
@@ -18,6 +19,9 @@ function stepOf([from, to]: [number, number]): number {
   return Number(`${digit}e${power}`);
 }
 
+/** Decimals that tell the steps of a slider apart, as many as its quantity usually has or more. */
+const decimals = (range: [number, number], usual: number): number => Math.max(usual, -Math.floor(Math.log10(stepOf(range))));
+
 /** Puts a slider to a value, which may lie between its steps, and says it as the number beside it does. */
 function put(slider: HTMLInputElement, value: number, digits: number): void {
   slider.value = String(value);
@@ -26,15 +30,18 @@ function put(slider: HTMLInputElement, value: number, digits: number): void {
 
 /** The sliders that steer a run. */
 export class Sliders {
+  private readonly digits: Partial<Record<Steered, number>> = {};
+
   constructor(private readonly steered: (parameter: Steered, value: number) => void) {}
 
   /** The sliders of what this tube can be steered by. */
   make(tube: Welcome): void {
     const box = element("sliders");
     box.replaceChildren();
-    for (const [key, { name, digits }] of Object.entries(NAMES) as [Steered, (typeof NAMES)[Steered]][]) {
+    for (const [key, { name, digits: usual }] of Object.entries(NAMES) as [Steered, (typeof NAMES)[Steered]][]) {
       const range = tube.ranges[key];
       if (!range) continue;
+      const digits = (this.digits[key] = decimals(range, usual));
       const label = document.createElement("label");
       label.innerHTML = `<span>${name}</span><input type="text" inputmode="decimal" autocomplete="off"><input type="range">`;
       const [number, slider] = label.querySelectorAll("input");
@@ -59,7 +66,8 @@ export class Sliders {
         const value = text === "" ? NaN : Number(text);
         if (Number.isFinite(value)) {
           steer(value);
-          if (value < range[0] || value > range[1]) say(`${slider.ariaLabel}: ${text} is outside ${range[0]} to ${range[1]}, and ${number.value} is taken`, true);
+          if (value >= range[0] && value <= range[1]) say("");
+          else say(`${slider.ariaLabel}: ${text} is outside ${range[0]} to ${range[1]}, and ${value < range[0] ? range[0] : range[1]} is taken`, true);
         } else {
           say(`${slider.ariaLabel}: “${number.value}” is no number`, true);
           number.value = known;
@@ -81,7 +89,7 @@ export class Sliders {
       const low = Number(slider.min);
       slider.style.setProperty("--now", `${(100 * (value - low)) / (Number(slider.max) - low)}%`);
       const aim = aims[key] ?? value;
-      const { digits } = NAMES[key];
+      const digits = this.digits[key] ?? NAMES[key].digits;
       if (!slider.matches(":active")) put(slider, aim, digits);
       if (number !== document.activeElement) number.value = aim.toFixed(digits);
     }

@@ -68,7 +68,7 @@ export class SpaceTime {
     context.imageSmoothingEnabled = false;
     this.looks.forEach(({ clock }, k) => {
       const left = x.at(clock);
-      const right = x.at(this.looks.at(k + 1)?.clock ?? Math.min(end, clock + this.each));
+      const right = x.at(this.looks.at(k + 1)?.clock ?? clock);
       context.drawImage(this.image, k, 0, 1, tube.waves, left, box.top, Math.max(1, right - left + 0.5), box.height);
     });
   }

@@ -121,11 +121,12 @@ class StudyPage {
     const rest = Object.entries(counts).filter(([state]) => state !== "done");
     const states: Record<string, string> = { leased: "being computed", pending: "waiting", checkpointed: "interrupted" };
     const parts = rest.map(([state, count]) => `${count} ${states[state] ?? state}`);
-    element("facts").textContent = [name, `${results.rows.toLocaleString("en")} runs done`, ...parts].join(" · ");
+    element("facts").textContent = [name, `${results.rows.toLocaleString("en")} ${results.rows === 1 ? "run" : "runs"} done`, ...parts].join(" · ");
     element("refresh").hidden = !growing;
     const folder = /^[\w./-]+$/.test(store ?? "") ? store : `'${store}'`;
+    const none = this.choice.x ? "No finished run has such a value." : "Nothing can go across: the finished runs differ in no number. study export writes them as a table.";
     element("empty").textContent = results.rows > 0
-      ? "No finished run has such a value."
+      ? none
       : `No run of this study has ended yet. This computes them: peristalsis study run ${folder}/study.toml --store ${folder}`;
   }
 
@@ -278,9 +279,10 @@ class StudyPage {
     const box = element("legend");
     if (!results || this.points.length === 0) return box.replaceChildren();
     const value = this.quantity;
-    if (choice.view === "heat") return showScale(box, value, this.scale());
+    const limits = this.points.some(({ atLeast }) => atLeast);
+    if (choice.view === "heat") return showScale(box, value, this.scale(), limits);
     const family = results.parameter(choice.other);
-    showMarks(box, family?.label ?? value, this.curves(), this.points.some(({ atLeast }) => atLeast));
+    showMarks(box, family?.label ?? value, this.curves(), limits);
   }
 
   private showTip(): void {

@@ -13,11 +13,23 @@ const SLACK = 0.9;
 /** Steps there and back, and milliseconds from one look at the place to the next. */
 const STEPS = 150;
 const EACH = 40;
-/** From where to where, of what drives the tube; what is known to jam and what is known to let go lie between. */
+/** From where to where, of what drives the tube: in tubes of the published runs what is known to jam and what is known to let go lie between. */
 const WAYS: Record<Welcome["control"], [Steered, number, number]> = {
   strain: ["width", 3, 2.4],
   stress: ["force_amplitude", 0.0015, 0.0065],
 };
+/** Part of its range that the way through another tube leaves out, where it is driven hardest. */
+const LEFT_OUT = 0.25;
+
+/** What is led, from where and to where, in a tube. */
+function wayOf({ control, ranges, published }: Welcome): [Steered, number, number] {
+  const [parameter, from, to] = WAYS[control];
+  const range = ranges[parameter];
+  if (published || !range) return [parameter, from, to];
+  const [least, most] = range;
+  const room = LEFT_OUT * (most - least);
+  return control === "strain" ? [parameter, most, least + room] : [parameter, least, most - room];
+}
 
 /** The way there and back again, that the loop is seen on. */
 export class Sweep {
@@ -31,7 +43,7 @@ export class Sweep {
   }
 
   begin(tube: Welcome): void {
-    const [parameter, from, to] = WAYS[tube.control];
+    const [parameter, from, to] = wayOf(tube);
     const range = tube.ranges[parameter];
     if (!range) return;
     const [begin, first] = [performance.now(), this.samples()];

@@ -45,7 +45,9 @@ impl Studies {
             found.add(&store, Study::of_store(&store).map_err(failure));
         }
         if found.is_empty() {
-            let tables = inside(source, |path| is_table(path) && path.is_file());
+            let mut tables = inside(source, |path| is_table(path) && path.is_file());
+            let all = tables.clone();
+            tables.retain(|table| !is_beside(table, &all));
             reading(tables.len(), source);
             for table in tables {
                 found.add(&table, of_table(&table));
@@ -92,6 +94,23 @@ fn inside(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
     paths.retain(|path| wanted(path));
     paths.sort();
     paths
+}
+
+/// Whether a table says no more than another: the CSV of a Parquet table, or what `study export` writes beside the rows.
+fn is_beside(table: &Path, all: &[PathBuf]) -> bool {
+    let stem = table.file_stem().unwrap_or_default().to_string_lossy();
+    let has = |stem: &str| {
+        let mut names = TABLES
+            .iter()
+            .map(|ending| table.with_file_name(format!("{stem}.{ending}")));
+        names.any(|name| name != *table && all.contains(&name))
+    };
+    let is_csv = table.extension().is_some_and(|ending| ending == TABLES[1]);
+    let of_rows = ["-failed", "-timing", "-series"];
+    is_csv && has(&stem)
+        || of_rows
+            .iter()
+            .any(|end| stem.strip_suffix(end).is_some_and(&has))
 }
 
 fn is_table(path: &Path) -> bool {
