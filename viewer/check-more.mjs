@@ -496,7 +496,7 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
   /** The figures of a reproduction. */
   async function checkFigures(browser) {
     const folder = join(runs, "reproduction");
-    const made = spawnSync(program, ["reproduce", "--quick", "--only", "F8", "--for", "2s", "--out", folder, "--quiet"]);
+    const made = spawnSync(program, ["reproduce", "--quick", "--only", "Q3", "--for", "2s", "--out", folder, "--quiet"]);
     assert(existsSync(join(folder, "claims.json")), String(made.stderr));
     const { address, end } = await serve(folder);
     const { page, close } = await open(browser, address, desk, () => window.study !== undefined);
