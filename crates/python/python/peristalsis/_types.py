@@ -186,8 +186,8 @@ class Keywords(TypedDict, total=False):
     initial_state: Literal["rest", "settled", "jammed", "placed"]
     initial_temperature: float
     inlet_feed_rate: float
-    """inlet.feed_rate. Grains put in per time, as far as there is place for them. Default: as many as there is
-    place for. (Unit: t^-1.)"""
+    """inlet.feed_rate. Grains put in per time, as far as there is place for them. Default: as many as find a place
+    each time that the wave has run one d, or every 2 t where it stands. (Unit: t^-1.)"""
     inlet_head: float
     inlet_length: float
     inlet_velocity: float
