@@ -524,7 +524,39 @@ fn too_few_runs_leave_every_verdict_open() {
     for id in ["F1", "F2", "F3", "F4", "F5", "F6", "F7", "F8", "F9"] {
         let found = examine(id, &evidence);
         assert_verdict(&found, Verdict::Open);
-        assert_says(&found.walls[0].why, "too few runs for a verdict");
+        assert_says(&found.walls[0].why, "too few runs or widths for a verdict");
+    }
+}
+
+/// REFEREE, F1: fast grains that hardly touch are no jam by F9, and count in F1.
+#[test]
+fn a_fast_flow_that_coasts_is_told() {
+    for (contacts, is_told) in [(0.3, true), (2.0, false)] {
+        let mut rows = SOURCE.branches(Lattice::FINE);
+        rows.set("contacts", contacts);
+        let found = examine("F1", &rows::evidence(&[("branches-fine", &rows)]));
+        assert_verdict(&found, Verdict::Reproduced);
+        let told = "fewer than 1 contact each when the runs end";
+        let is_found = found.weaknesses.iter().any(|it| it.contains(told));
+        assert_eq!(is_found, is_told, "{:?}", found.weaknesses);
+    }
+}
+
+/// REFEREE, F9: what a single run from jammed cannot tell is not told.
+#[test]
+fn so_few_runs_from_jammed_cannot_tell_that_the_start_does_not_matter() {
+    let tube = Tube {
+        hysteresis: 0.0,
+        ..SOURCE
+    };
+    for (most, why) in [(9.0, "not at"), (0.0, "unclear at")] {
+        let mut evidence = rows::evidence(&[]);
+        let rows = tube.branches(Lattice::FINE);
+        let kept = rows.only(|texts, numbers| {
+            texts["initial_state"] == "rest" || numbers["replicate"] <= most
+        });
+        evidence.add_table("branches-fine", kept.table()).unwrap();
+        assert_says(&examine("F9", &evidence).walls[0].why, why);
     }
 }
 
