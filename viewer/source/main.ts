@@ -147,6 +147,7 @@ class Page {
     } catch {
       document.body.dataset.flat = "true";
       element("flat").hidden = false;
+      element("stage").setAttribute("aria-label", "The tube and its grains from the side");
       return;
     }
     this.scene.lookAs(this.asked);

@@ -176,12 +176,15 @@ class StudyPage {
   private regroup(): void {
     const { results, choice, chosen } = this;
     this.points = [];
+    element("left-out").textContent = "";
     if (!results || choice.view === "figures" || !choice.x) return;
     const rows = results.where(results.all(), choice.fixed);
     const kept = rows.filter((row) => choice.start === "both" || results.value("initial_state", row) === choice.start);
     const other = choice.other === "none" ? null : choice.other;
     const points = results.points(kept, choice.value, choice.x, other);
     this.points = choice.logarithmic ? points.filter(({ value }) => value > 0) : points;
+    const left = points.length - this.points.length;
+    if (left > 0) element("left-out").textContent = `Not shown, for they are 0 or below: ${left} of ${points.length} points.`;
     const is = (point: Point) => point.x === chosen?.x && point.other === chosen.other && point.start === chosen.start;
     this.chosen = this.points.find(is) ?? null;
   }

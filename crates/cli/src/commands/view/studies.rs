@@ -120,7 +120,8 @@ fn is_table(path: &Path) -> bool {
 
 /// The runs of a table can be watched where it is of a study behind the claims, whose design this program knows.
 fn of_table(path: &Path) -> Result<Study, Failure> {
-    let table = read_table(path).map_err(StudyError::from)?;
+    // A file that is no table is no fault of the disk.
+    let table = read_table(path).map_err(|error| StudyError::not_rows(path)(error.to_string()))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = table.metadata().get("peristalsis.study");
     let of_table =
