@@ -105,6 +105,9 @@ export const written = (value: number, digits = 3): string => {
   return `${plain === "1" ? "" : plain === "−1" ? "−" : `${plain}·`}${powerOfTen(Number(power))}`;
 };
 
+/** A number or a word of a column as a reader sees it; nothing where there is none. */
+export const textOf = (value: number | string | null, digits?: number): string => (typeof value === "number" ? written(value, digits) : (value ?? ""));
+
 /** Ticks with their names, with as many digits as tell each from the next. */
 function named(ticks: number[]): [number, string][] {
   const step = Math.min(...ticks.slice(1).map((tick, k) => tick - ticks[k]));

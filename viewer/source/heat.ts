@@ -1,4 +1,4 @@
-import { type Chart, type Ink, written } from "./charts";
+import { type Chart, type Ink, textOf, written } from "./charts";
 import { type Colour, colourAt, css } from "./fields";
 import type { Point, Value } from "./results";
 
@@ -69,8 +69,9 @@ export function drawHeat(chart: Chart, points: Point[], rows: (Value | null)[], 
   for (const { point, left, top, width, height: high } of cells) {
     const colour = colourAt(LIGHTNESS, placeIn(scale, point.value));
     context.fillStyle = css(colour);
-    context.fillRect(left + 0.5, top + 0.5, Math.max(1, width - 1), Math.max(1, high - 1));
-    if (point.atLeast) hatch(context, left + 0.5, top + 0.5, Math.max(1, width - 1), Math.max(1, high - 1), light(colour) > 0.19 ? "#10141c66" : "#ffffff66");
+    const within: Box = [left + 0.5, top + 0.5, Math.max(1, width - 1), Math.max(1, high - 1)];
+    context.fillRect(...within);
+    if (point.atLeast) hatch(context, within, light(colour) > 0.19 ? "#10141c66" : "#ffffff66");
     const text = (point.atLeast ? "≥ " : "") + short(point.value);
     context.font = "11px system-ui, sans-serif";
     // All numbers or none: short ones alone would look like the only ones.
@@ -84,7 +85,7 @@ export function drawHeat(chart: Chart, points: Point[], rows: (Value | null)[], 
   context.textAlign = "right";
   context.textBaseline = "middle";
   rows.forEach((value, place) => {
-    const text = typeof value === "number" ? written(value) : (value ?? "");
+    const text = textOf(value);
     context.fillText(text, box.left - 7, box.top + box.height - (place + 0.5) * height, box.left - 9);
   });
   const cell = cells.find(({ point }) => point === chosen);
@@ -99,11 +100,15 @@ export function drawHeat(chart: Chart, points: Point[], rows: (Value | null)[], 
   return cells;
 }
 
+/** Left, top, width and height. */
+type Box = [number, number, number, number];
+
 /** Lines across a cell whose value is a lower limit. */
-function hatch(context: Chart["context"], left: number, top: number, width: number, height: number, colour: string): void {
+function hatch(context: Chart["context"], within: Box, colour: string): void {
+  const [left, top, width, height] = within;
   context.save();
   context.beginPath();
-  context.rect(left, top, width, height);
+  context.rect(...within);
   context.clip();
   context.beginPath();
   for (let from = left - height; from < left + width; from += 7) {

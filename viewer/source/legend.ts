@@ -1,4 +1,4 @@
-import { ink, written } from "./charts";
+import { ink, textOf, written } from "./charts";
 import { type Curve, mark, type Style } from "./curves";
 import { colourAt, css } from "./fields";
 import { LIGHTNESS, type Scale } from "./heat";
@@ -43,7 +43,7 @@ export function showMarks(box: HTMLElement, family: string, curves: Curve[], lim
   const members = new Set(curves.map(({ member }) => member).filter((member) => member !== null));
   for (const member of members) {
     const style = curves.find((curve) => curve.member === member)?.style;
-    if (style) item(typeof member === "number" ? written(member) : member, { ...style, open: !both && style.open });
+    if (style) item(textOf(member), { ...style, open: !both && style.open });
   }
   if (both) for (const start of starts) item(`from ${start}`, { colour: ink().text, mark: 0, open: start === "jammed" });
   if (limits) note(box, "↑ at least: runs ended before their transition");

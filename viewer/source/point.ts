@@ -1,5 +1,5 @@
 /** What a chosen point of a study says: in its tip, and in the panel beside the plot with its runs. */
-import { written } from "./charts";
+import { textOf, written } from "./charts";
 import type { Choice } from "./choice";
 import { element, fill } from "./page";
 import type { Point, Results } from "./results";
@@ -11,7 +11,7 @@ export function factsOf(point: Point, results: Results, { x, other }: Choice): F
   const facts: Facts = [[results.parameter(x)?.label ?? x, written(point.x, 4)]];
   const family = results.parameter(other);
   if (family && point.other !== null)
-    facts.push([family.label, typeof point.other === "number" ? written(point.other, 4) : point.other]);
+    facts.push([family.label, textOf(point.other, 4)]);
   if (point.start) facts.push(["start", `from ${point.start}`]);
   facts.push(["replicates", String(point.number)]);
   if (point.atLeast) facts.push(["without a transition", String(point.censored)]);

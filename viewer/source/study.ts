@@ -1,6 +1,6 @@
 import { type Choice, keep, read, untouched } from "./choice";
 import { momentOf } from "./first";
-import { Chart, ink, written } from "./charts";
+import { Chart, ink, textOf } from "./charts";
 import { type Curve, curvesOf, drawCurves, extent } from "./curves";
 import { showFigures } from "./figures";
 import { across, drawHeat, type Scale } from "./heat";
@@ -158,7 +158,7 @@ class StudyPage {
       const values = results.valuesOf(parameter.name, rows);
       const label = document.createElement("label");
       const select = document.createElement("select");
-      values.forEach((it, k) => select.add(new Option(typeof it === "number" ? written(it, 4) : it, String(k))));
+      values.forEach((it, k) => select.add(new Option(textOf(it, 4), String(k))));
       select.value = String(values.indexOf(value));
       select.onchange = () => {
         choice.fixed.set(parameter.name, values[Number(select.value)]);
@@ -245,7 +245,7 @@ class StudyPage {
       if (choice.view === "heat") {
         const own = this.points.filter(({ start }) => start === panel.start);
         const rows = this.members();
-        const longest = Math.max(...rows.map((row) => (typeof row === "number" ? written(row) : (row ?? "")).length));
+        const longest = Math.max(...rows.map((row) => textOf(row).length));
         const left = Math.min(150, Math.max(42, 7 * longest + 14));
         chart.begin(across(this.points), [0, 1], [x.label, other], colours, { left, scaled: false });
         panel.cells = drawHeat(chart, own, rows, this.scale(), this.chosen, colours);

@@ -155,6 +155,19 @@ fn the_flow_of_an_open_tube_does_not_depend_on_how_often_it_is_sampled() {
     assert!((rarely - often).abs() < 1e-9 * often, "{rarely} {often}");
 }
 
+/// A pump engineer: a feed that the inlet could not take was missed without a word.
+#[test]
+fn a_feed_that_finds_no_place_is_told() {
+    for (rate, is_told) in [(50.0, true), (0.05, false)] {
+        let open =
+            "tube.waves=2 tube.ends=open inlet.waiting=30 drive.body_force=0.002 run.periods=4";
+        let settings = format!("{open} drive.strain_rate=0.01 inlet.feed_rate={rate}");
+        let run = finish(Run::new(configuration("frictionless", &settings)).unwrap());
+        let told = run.warnings().iter().any(|it| it.key == "inlet.feed_rate");
+        assert_eq!(told, is_told, "{rate}: {:?}", run.warnings());
+    }
+}
+
 /// Grains in the gaps of the wall are farther out than where they would touch a smooth one.
 #[test]
 fn mixing_and_segregation_do_not_depend_on_the_numbers_of_the_grains() {

@@ -59,7 +59,10 @@ pub(crate) fn draw_all(
     };
     let samples = run.recorder().samples();
     if let Some(of_outlet) = summary.discharge.filter(|_| !samples.is_empty()) {
-        add("discharge", discharge(run, &of_outlet, summary.late_part()))?;
+        add(
+            "discharge",
+            discharge(run, &of_outlet, summary.late_part(samples.len())),
+        )?;
     }
     if samples.iter().any(|it| it.flow_rate_ratio.is_finite()) {
         add("flow", flow(run, summary))?;
@@ -243,7 +246,11 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     let threshold = configuration.observe.transition_threshold;
     let level = Line::new("threshold", &[0.0, last], &[threshold; 2]).tint(Tint::Black);
     panel = panel.with(level.pattern(Pattern::Dotted).weight(0.7));
-    let late_mean = late_mean(summary.flow_rate_ratio, summary.late_part(), measured);
+    let late_mean = late_mean(
+        summary.flow_rate_ratio,
+        summary.late_part(samples.len()),
+        measured,
+    );
     panel = panel.with_all(late_mean.into_iter().flatten());
     panel = panel.with_all(newtonian_fluid(summary, last));
     if let Some(time) = summary.transition_time {

@@ -106,8 +106,7 @@ pub struct Summary {
     /// J/Jmax of each late sample.
     late_ratios: Vec<f64>,
     flow_rate_ratio_raw: f64,
-    /// Intervals between samples, of the whole run and of its late part.
-    intervals: u64,
+    /// Intervals between samples in it.
     late_intervals: u64,
     /// J/Jmax of each whole late period.
     late_averages: Vec<f64>,
@@ -188,7 +187,6 @@ impl Summary {
             late_averages: recorder
                 .late_averages(late_intervals / samples_per_period)
                 .to_vec(),
-            intervals: samples.len() as u64 * recorder.intervals(),
             late_intervals,
             whole,
             narrow: part(WavePart::Narrow),
@@ -291,9 +289,9 @@ impl Summary {
         mean_of(&self.late, value)
     }
 
-    /// Part of the samples that late means are over.
-    pub(crate) fn late_part(&self) -> f64 {
-        self.late_intervals as f64 / self.intervals.max(1) as f64
+    /// Part of so many samples of the whole run that late means are over.
+    pub(crate) fn late_part(&self, samples: usize) -> f64 {
+        self.late.len() as f64 / samples.max(1) as f64
     }
 
     /// Periods that late means are over.

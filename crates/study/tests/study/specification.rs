@@ -207,6 +207,11 @@ fn keys_of_the_study_are_checked_like_those_of_a_configuration() {
         "states = [\"rest\", \"jamed\"]",
         &["study.toml:4:19", "did you mean \"jammed\"?"],
     );
+    refused_with(
+        "replicates = 3",
+        "states = [\"rest\", \"jammed\", \"rest\"]",
+        &["study.toml:4:29", "states has \"rest\" twice"],
+    );
     refused_with("[[axes]]", "[[axes]", &["study.toml:12", "not TOML"]);
 }
 

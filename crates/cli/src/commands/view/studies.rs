@@ -138,3 +138,22 @@ fn of_table(path: &Path) -> Result<Study, Failure> {
     }
     Ok(best)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_export_writes_beside_the_rows_is_no_study() {
+        let names = [
+            "a.csv",
+            "a.parquet",
+            "a-timing.csv",
+            "a-failed.csv",
+            "b-failed.csv",
+        ];
+        let all: Vec<PathBuf> = names.map(PathBuf::from).into();
+        let kept: Vec<&PathBuf> = all.iter().filter(|table| !is_beside(table, &all)).collect();
+        assert_eq!(kept, [Path::new("a.parquet"), Path::new("b-failed.csv")]);
+    }
+}
