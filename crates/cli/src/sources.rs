@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 
 use peristalsis_configuration::{Configuration, SourceFile, Sources, preset, preset_names};
 use peristalsis_engine::EngineError;
+use peristalsis_formats::checkpoint;
 use peristalsis_reproduce::design::is_design;
 use peristalsis_run::RunError;
 use peristalsis_study::Specification;
@@ -56,12 +57,36 @@ pub(crate) fn name_and_text(
     let Some(path) = &arguments.file else {
         return Ok(None);
     };
-    let text = text_of(path).map_err(|error| no_file(path, error))?;
+    let text = text_of(path).map_err(|error| match is_saved_state(path) {
+        true => not_a_saved_state(path),
+        false => no_file(path, error),
+    })?;
     let name = match is_standard_input(path) {
         true => "standard input".to_owned(),
         false => path.display().to_string(),
     };
     Ok(Some((name, text)))
+}
+
+/// Whether a file is the saved state of a run.
+fn is_saved_state(path: &Path) -> bool {
+    std::fs::read(path).is_ok_and(|bytes| checkpoint::physics_hash(&bytes).is_ok())
+}
+
+/// That a saved state is not a configuration, and how to go on from it.
+fn not_a_saved_state(path: &Path) -> Failure {
+    let folder = path.parent().filter(|it| it.join("config.toml").exists());
+    let help = match folder {
+        Some(folder) if !folder.as_os_str().is_empty() => {
+            let folder = folder.display();
+            format!(
+                "go on with its run: peristalsis run --resume {folder}; or on a page: peristalsis view {folder} --from-state"
+            )
+        }
+        _ => format!("go on from it: peristalsis run --resume {}", path.display()),
+    };
+    let is = "is the saved state of a run, not a configuration";
+    Failure::usage(format!("{} {is}", path.display()), help)
 }
 
 /// That a file cannot be read, which may be the name of a preset.

@@ -185,7 +185,8 @@ impl Drive {
     /// How a wavelength of the tube is squeezed.
     pub fn contraction(&self) -> Contraction {
         let segments = self.segments.as_ref().and_then(Segments::new);
-        let table = RadiusTable::new(&self.phases, &self.radii).map(Contraction::Table);
+        let table = RadiusTable::new(&self.phases, &self.radii).ok();
+        let table = table.map(Contraction::Table);
         let wave = || self.waveform.travelling().unwrap_or_default().into();
         let segments = segments.map(Contraction::Segments);
         segments.or(table).unwrap_or_else(wave)

@@ -115,7 +115,8 @@ impl Contract<'_> {
     /// Refuses a whole number that is written like another, such as 1e3.
     fn whole_as_real(&mut self, item: &Item, number: f64, schema: &Value, path: &str) {
         let whole = in_digits(number);
-        if let Some(complaint) = complaint(number, schema) {
+        let beyond_integers = (number >= i64::MAX as f64).then_some("is too large");
+        if let Some(complaint) = complaint(number, schema).or(beyond_integers) {
             let message = format!("{path} = {whole} {complaint}");
             let place = (&item.origin, complaint);
             return self.refuse(
@@ -214,7 +215,9 @@ fn complaint(number: f64, schema: &Value) -> Option<&'static str> {
         || bound("exclusiveMinimum").is_some_and(|least| number <= least)
     {
         Some("is too small")
-    } else if bound("maximum").is_some_and(|most| number > most) {
+    } else if bound("maximum").is_some_and(|most| number > most)
+        || bound("exclusiveMaximum").is_some_and(|most| number >= most)
+    {
         Some("is too large")
     } else {
         None
@@ -335,5 +338,5 @@ fn range_in_words(schema: &Value) -> String {
         Some(_) => bound("minimum", ", ", " or more"),
         None => bound("exclusiveMinimum", " above ", ""),
     };
-    least + &bound("maximum", ", at most ", "")
+    least + &bound("maximum", ", at most ", "") + &bound("exclusiveMaximum", ", below ", "")
 }

@@ -161,8 +161,13 @@ fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
     let node = match value.get_ref() {
         DeValue::String(text) => Node::Text(text.to_string()),
         DeValue::Integer(integer) => {
-            let other = Node::Other("a whole number of more than 63 bits");
-            i64::from_str_radix(integer.as_str(), integer.radix()).map_or(other, Node::Integer)
+            let (digits, radix) = (integer.as_str(), integer.radix());
+            match (i64::from_str_radix(digits, radix), digits.parse()) {
+                (Ok(integer), _) => Node::Integer(integer),
+                // It may still be a real number.
+                (Err(_), Ok(number)) if radix == 10 => Node::Float(number),
+                _ => Node::Other("too large a whole number"),
+            }
         }
         DeValue::Float(float) => match float.as_str().parse::<f64>() {
             // A literal too large for f64 reads as infinite; no key takes either.

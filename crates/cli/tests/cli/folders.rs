@@ -217,7 +217,14 @@ fn what_cannot_be_resumed() {
     place.does("run --resume whole --csv");
     assert!(place.path("whole/timeseries.csv").is_file());
 
-    std::fs::remove_file(place.path("whole/state.checkpoint")).unwrap();
+    let state = ["is the saved state", "peristalsis run --resume whole"];
+    place.refuses("check whole/state.checkpoint", &state);
+    std::fs::rename(
+        place.path("whole/state.checkpoint"),
+        place.path("alone.checkpoint"),
+    )
+    .unwrap();
+    place.refuses("view alone.checkpoint", &["run --resume alone.checkpoint"]);
     place.refuses("run --resume whole", &["state.checkpoint"]);
 }
 

@@ -93,13 +93,10 @@ fn check_table(drive: &Drive, context: &mut Context<'_>) -> Option<()> {
         return Some(());
     }
     check_strain_control(drive, "a table sets", context)?;
-    if RadiusTable::new(&drive.phases, &drive.radii).is_none() {
-        let message = match (drive.phases.len(), drive.radii.len()) {
-            (0, 0) => "the table of the wave is missing".into(),
-            (phases, radii) if phases != radii => {
-                format!("{phases} phases and {radii} radii: each phase needs a radius")
-            }
-            (points, _) => format!("these {points} points are no curve over a wavelength"),
+    if let Err(reason) = RadiusTable::new(&drive.phases, &drive.radii) {
+        let message = match drive.phases.is_empty() && drive.radii.is_empty() {
+            true => "the table of the wave is missing".into(),
+            false => format!("this is no curve over a wavelength: {reason}"),
         };
         return context.refuse(
             &["drive.phases", "drive.radii", "drive.waveform"],

@@ -207,7 +207,7 @@ fn a_wave_from_a_table() {
 frictionless | {waveform}; {name} | drive.table | Inconsistent | No such file
 frictionless | {waveform} | drive.phases | Inconsistent | the table of the wave is missing
 frictionless | {waveform}; {} | drive.phases | Inconsistent | 4 phases and 0 radii
-frictionless | {waveform}; drive.phases=[0.5, 0, 0.7]; drive.radii=[1, 2, 1] | drive.phases | Inconsistent | 3 points are no curve
+frictionless | {waveform}; drive.phases=[0.5, 0, 0.7]; drive.radii=[1, 2, 1] | drive.phases | Inconsistent | this is no curve over a wavelength: phase 0 follows 0.5
 frictionless | {} | drive.phases | Conflict | belongs to drive.waveform
 ",
         lists[0], lists[0]

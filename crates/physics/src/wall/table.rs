@@ -18,18 +18,35 @@ pub struct RadiusTable {
 }
 
 impl RadiusTable {
-    /// `None` unless there are 3 to [`MOST_POINTS`] phases, ascending from 0 on and below 1, and as many finite radii, not
-    /// all alike.
-    pub fn new(phases: &[f64], radii: &[f64]) -> Option<Self> {
+    /// The curve through points of one wavelength.
+    ///
+    /// # Errors
+    /// What is wrong with the points, unless there are 3 to [`MOST_POINTS`] phases, ascending from 0 on and below 1, and as
+    /// many finite radii, not all alike.
+    pub fn new(phases: &[f64], radii: &[f64]) -> Result<Self, String> {
         let number = phases.len();
+        if radii.len() != number {
+            let radii = radii.len();
+            return Err(format!(
+                "{number} phases and {radii} radii: each phase needs a radius"
+            ));
+        }
+        if !(3..=MOST_POINTS).contains(&number) {
+            return Err(format!(
+                "{number} points, and a curve needs 3 to {MOST_POINTS}"
+            ));
+        }
+        if let Some(phase) = phases.iter().find(|phase| !(0.0..1.0).contains(*phase)) {
+            return Err(format!("phase {phase} is not from 0 to below 1"));
+        }
+        if let Some(pair) = phases.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let (before, after) = (pair[0], pair[1]);
+            return Err(format!("phase {after} follows {before}, and phases ascend"));
+        }
         let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
         let most = radii.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let is_ordered = phases.windows(2).all(|pair| pair[0] < pair[1])
-            && phases.iter().all(|phase| (0.0..1.0).contains(phase));
-        let is_curve = radii.iter().all(|radius| radius.is_finite()) && least < most;
-        if !(3..=MOST_POINTS).contains(&number) || radii.len() != number || !is_ordered || !is_curve
-        {
-            return None;
+        if !radii.iter().all(|radius| radius.is_finite()) || least == most {
+            return Err("radii are finite and not all alike".to_owned());
         }
         let mut table = Self {
             number,
@@ -50,7 +67,7 @@ impl RadiusTable {
                 table.slopes[point] = (one + other) / (one / steep_before + other / steep_after);
             }
         }
-        Some(table)
+        Ok(table)
     }
 
     /// Least distance of two neighbouring points \[cycles\].
@@ -184,21 +201,18 @@ mod tests {
 
     #[test]
     fn what_is_no_curve_is_refused() {
-        let no_curve: [(&[f64], &[f64]); 7] = [
-            (&[0.0, 0.5], &[1.0, 2.0]),
-            (&[0.0, 0.5, 0.5], &[1.0, 2.0, 1.0]),
-            (&[0.0, 0.5, 1.0], &[1.0, 2.0, 1.0]),
-            (&[-0.1, 0.5, 0.9], &[1.0, 2.0, 1.0]),
-            (&[0.0, 0.5, 0.9], &[1.0, 2.0]),
-            (&[0.0, 0.5, 0.9], &[1.0, 1.0, 1.0]),
-            (&[0.0, 0.5, 0.9], &[1.0, f64::NAN, 2.0]),
+        let no_curve: [(&[f64], &[f64], &str); 7] = [
+            (&[0.0, 0.5], &[1.0, 2.0], "2 points"),
+            (&[0.0, 0.5, 0.4], &[1.0, 2.0, 1.0], "0.4 follows 0.5"),
+            (&[0.0, 0.5, 1.0], &[1.0, 2.0, 1.0], "phase 1 is not"),
+            (&[-0.1, 0.5, 0.9], &[1.0, 2.0, 1.0], "phase -0.1 is not"),
+            (&[0.0, 0.5, 0.9], &[1.0, 2.0], "3 phases and 2 radii"),
+            (&[0.0, 0.5, 0.9], &[1.0, 1.0, 1.0], "not all alike"),
+            (&[0.0, 0.5, 0.9], &[1.0, f64::NAN, 2.0], "finite"),
         ];
-        for (phases, radii) in no_curve {
-            assert_eq!(
-                RadiusTable::new(phases, radii),
-                None,
-                "{phases:?} {radii:?}"
-            );
+        for (phases, radii, reason) in no_curve {
+            let refused = RadiusTable::new(phases, radii).unwrap_err();
+            assert!(refused.contains(reason), "{phases:?} {radii:?}: {refused}");
         }
     }
 }
