@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 #[schemars(inline)]
 pub enum Law {
-    /// `y = A (w_c - w)^-B`: a divergence as of a critical point or the end of a branch (a spinodal). Claim F2.
+    /// `y = A (w_c - w)^-B`: a divergence as of a critical point or the end of a branch (a spinodal).
     Power,
     /// `y = A exp(B/(w_c - w)^power)`: nucleation over a barrier that diverges where the two flows coexist. A droplet
     /// of d dimensions has power d - 1: 2 in bulk, 1 in a plane.

@@ -113,7 +113,6 @@ impl Fractions {
             runs: self.runs,
         };
         if let Some((lower, upper)) = separated {
-            let bracket = Interval { lower, upper };
             let mut log_likelihood = 0.0;
             let mut value = 0.5 * (lower + upper);
             if mixed == 1 {
@@ -122,8 +121,7 @@ impl Fractions {
                 log_likelihood =
                     jams * libm::log(jams / runs) + (runs - jams) * libm::log1p(-jams / runs);
             }
-            let error = bracket.length() / 12.0_f64.sqrt();
-            let width = Uncertain::with_intervals(value, error, |_| bracket);
+            let width = Uncertain::bracketed(value, lower, upper);
             return Ok(found(width, 0.0, log_likelihood));
         }
         let undetermined = Error::undetermined(self.runs, 2);

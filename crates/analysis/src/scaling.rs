@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 pub enum Scaling {
     /// `y = p^-a f((w_c - w)/p^b)` with `w_c = slope p + w_max`: p the strain rate, w the abscissa, y the transition
-    /// time or its variance. Parameters a, b, slope, w_max. Claims F3 (a = 7/2, b = 3/2) and F4 (a = 7).
+    /// time or its variance. Parameters a, b, slope, w_max.
     CriticalLine,
     /// As `CriticalLine`, with a w_c of its own for every curve. Parameters a, b, then w_c of each curve in turn.
     CriticalEach,
@@ -38,7 +38,7 @@ impl Scaling {
     /// The critical scalings work in logarithms, X = ln((w_c - w)/p^b), Y = ln(y p^a), in which a power law is
     /// straight; a point at w >= w_c is not a number and counts as not overlapping. Where f is a pure power x^-alpha
     /// over the whole range, only a - b alpha is determined: the collapse is then equally good along a line of (a, b),
-    /// and its bootstrap errors are as large as the overlap allows. Missing parameters give not a number too.
+    /// and intervals of a and b are as long as the overlap allows. Missing parameters give not a number too.
     pub fn apply(
         &self,
         parameters: &[f64],

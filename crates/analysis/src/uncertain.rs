@@ -107,6 +107,18 @@ impl Uncertain {
         }
     }
 
+    /// A number of which only two bounds are known, most likely `value`: its error is that of a uniform distribution between
+    /// them. It makes the narrow interval; the bounds are the wide one.
+    pub fn bracketed(value: f64, lower: f64, upper: f64) -> Self {
+        let error = (upper - lower) / 12_f64.sqrt();
+        Self {
+            value,
+            error,
+            interval_68: Interval::new((value - error).max(lower), (value + error).min(upper)),
+            interval_95: Interval::new(lower, upper),
+        }
+    }
+
     /// A number whose two intervals follow from the deviations, in standard errors, of a normal number at their ends.
     pub(crate) fn with_intervals(
         value: f64,

@@ -106,6 +106,11 @@ impl Step {
     pub(crate) fn counts(&self, least: f64) -> bool {
         self.height.value.abs() > least.max(CLEAR * self.height.error)
     }
+
+    /// Whether the second flow is higher by more than `least` and [`CLEAR`] errors.
+    pub(crate) fn rises_by(&self, least: f64) -> bool {
+        self.height.value > 0.0 && self.counts(least)
+    }
 }
 
 /// The fraction of the grains outside the tube near a transition, by the one rule of all claims: the mean over the runs from
@@ -280,9 +285,10 @@ impl<'a> Branch<'a> {
     }
 
     /// How much is behind it, at its one strain rate.
-    pub(crate) fn statistics(&self, runs: usize) -> Statistics {
-        let replicates = self.points.iter().map(|point| point.runs).min();
-        Statistics::of(1, self.points.len(), replicates.unwrap_or(0), runs)
+    pub(crate) fn statistics(&self) -> Statistics {
+        let runs = || self.points.iter().map(|point| point.runs);
+        let replicates = runs().min().unwrap_or(0);
+        Statistics::of(1, self.points.len(), replicates, runs().sum())
     }
 
     /// Control and flow of each point, for figures.

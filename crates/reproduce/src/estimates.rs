@@ -1,6 +1,6 @@
 //! Numbers with errors put together: differences, means and powers.
 
-use peristalsis_analysis::{Interval, LineFit, Uncertain, power_exponent};
+use peristalsis_analysis::{LineFit, Uncertain, power_exponent};
 
 use crate::thresholds::LEAST_RATES;
 
@@ -27,19 +27,9 @@ pub(crate) fn columns(
     columns
 }
 
-/// A number known only by two bounds: its error follows from a uniform distribution between them, which is the 68 per
-/// cent interval as well, so that it reads the same everywhere; the bounds are the 95 per cent interval.
+/// A number midway between two bounds, of which no more is known.
 pub(crate) fn bracket(lower: f64, upper: f64) -> Uncertain {
-    let (value, error) = (0.5 * (lower + upper), (upper - lower) / 12_f64.sqrt());
-    Uncertain {
-        value,
-        error,
-        interval_68: Interval {
-            lower: value - error,
-            upper: value + error,
-        },
-        interval_95: Interval { lower, upper },
-    }
+    Uncertain::bracketed(0.5 * (lower + upper), lower, upper)
 }
 
 /// Weighted mean of several estimates; the error grows with their scatter where that exceeds their errors (Birge's

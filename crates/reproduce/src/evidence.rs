@@ -127,16 +127,20 @@ impl StudyResults {
             return Ok(None);
         };
         let (period, ratio) = (table.reals("period")?, table.reals("flow_rate_ratio")?);
-        let mut averages: Vec<f64> = Vec::new();
-        let (mut sum, mut number) = (0.0, 0.0);
-        for (end, ratio) in period.iter().zip(ratio) {
-            sum += ratio;
-            number += 1.0;
-            // A row ends at its `period`; the last row of a period ends at a whole number.
-            if (end - (averages.len() + 1) as f64).abs() < 1e-6 {
-                averages.push(sum / number);
-                (sum, number) = (0.0, 0.0);
-            }
+        // A row belongs to the period in which it ends; rows of a thinned series may be longer than a period.
+        let ends = period.iter().map(|end| (end - 1e-6).floor());
+        let rows: Vec<(f64, f64)> = ends.zip(ratio.iter().copied()).collect();
+        let averages = rows.chunk_by(|one, other| one.0 == other.0).map(|rows| {
+            let ratios = rows.iter().map(|row| row.1);
+            ratios.sum::<f64>() / rows.len() as f64
+        });
+        let mut averages: Vec<f64> = averages.collect();
+        // What a run did of its last period is not an average over it.
+        if period
+            .last()
+            .is_some_and(|end| (end - end.round()).abs() > 1e-6)
+        {
+            averages.pop();
         }
         Ok(Some(averages))
     }

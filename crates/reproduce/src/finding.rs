@@ -69,7 +69,13 @@ impl fmt::Display for Statistics {
 
 impl Statistics {
     /// The least for a verdict: 4 strain rates, 8 widths at each, 10 replicates of each point.
-    pub const FOR_A_VERDICT: Self = Self::of(4, 8, 10, 320);
+    pub const FOR_A_VERDICT: Self = Self::needed(4, 8, 10);
+
+    /// At least so many strain rates, widths and replicates, and so a run of each.
+    pub(crate) const fn needed(strain_rates: usize, widths: usize, replicates: usize) -> Self {
+        let runs = strain_rates * widths * replicates;
+        Self::of(strain_rates, widths, replicates, runs)
+    }
 
     /// So many strain rates, widths, replicates and runs.
     pub(crate) const fn of(
@@ -123,7 +129,7 @@ impl Statistics {
         }
     }
 
-    /// Whether these are at least the needed ones in every respect.
+    /// Whether there are at least as many strain rates, widths and replicates as are needed.
     pub fn suffice(&self, needed: &Self) -> bool {
         self.strain_rates >= needed.strain_rates
             && self.widths >= needed.widths

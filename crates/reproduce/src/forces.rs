@@ -79,8 +79,8 @@ pub(crate) fn counting<'a>(rows: &[Row<'a>]) -> Vec<Row<'a>> {
     rows.iter().filter(counts).copied().collect()
 }
 
-/// Whether the flow at a point is below a bound by many of its errors.
-pub(crate) fn is_below(point: &Point<'_>, bound: f64) -> bool {
+/// Whether the flow at a point, one chosen among many, is below a bound.
+pub(crate) fn is_clearly_below(point: &Point<'_>, bound: f64) -> bool {
     point.flow.value < bound - CLEAR * point.flow.error
 }
 
@@ -120,10 +120,7 @@ impl<'a> ForceLine<'a> {
         let pairs = jammed.points.iter();
         pairs
             .filter_map(|jammed| Some((rest.at(jammed.control)?, jammed)))
-            .filter(|(rest, jammed)| {
-                let step = Step::between(rest, jammed);
-                step.height.value > 0.0 && step.counts(LEAST_JUMP_AGAINST_FORCE)
-            })
+            .filter(|(rest, jammed)| Step::between(rest, jammed).rises_by(LEAST_JUMP_AGAINST_FORCE))
             .collect()
     }
 

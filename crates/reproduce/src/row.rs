@@ -146,7 +146,7 @@ pub(crate) fn nearest_threshold(wanted: f64) -> usize {
 
 impl<'a> Row<'a> {
     /// Columns of numbers that every table of runs has, besides the transition times at [`THRESHOLDS`].
-    pub const NUMBERS: [&'static str; 9] = [
+    pub const NUMBERS: [&'static str; 10] = [
         "width",
         "strain_rate",
         "volume_fraction",
@@ -156,6 +156,7 @@ impl<'a> Row<'a> {
         "flow_rate_ratio",
         "flow_rate_ratio_error",
         "transition_time",
+        "transition_threshold",
     ];
     /// Columns of whole numbers that every table of runs has.
     pub const WHOLE_NUMBERS: [&'static str; 6] = [

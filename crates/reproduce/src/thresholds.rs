@@ -79,7 +79,7 @@ pub(crate) const RESOLVED: f64 = 3.0;
 pub(crate) const STATIONARY_PERIODS: f64 = 50.0;
 /// What a verdict takes there: 3 strain rates, 6 forces at each and 5 replicates from either start, all of them runs with
 /// [`STATIONARY_PERIODS`]. Less than elsewhere, since each of these runs takes minutes, not seconds.
-pub(crate) const FOR_A_VERDICT_ON_FORCES: Statistics = Statistics::of(3, 6, 5, 180);
+pub(crate) const FOR_A_VERDICT_ON_FORCES: Statistics = Statistics::needed(3, 6, 5);
 /// Distance of two forces beyond which a rise between them is not judged by its height: a smooth rise may be as high.
 pub(crate) const FINEST: f64 = 6e-4;
 /// J/Jmax below which a line must begin, and which it must reach, to be called smooth: else the transition lies beyond it.
@@ -147,7 +147,7 @@ pub(crate) const NEAR_THE_JUMP: f64 = 0.05;
 // F8: densities.
 
 /// What F8 takes: one strain rate, for it is about densities.
-pub(crate) const F8_NEEDED: Statistics = Statistics::of(1, 8, 10, 320);
+pub(crate) const F8_NEEDED: Statistics = Statistics::needed(1, 8, 10);
 /// Densities that a verdict takes.
 pub(crate) const LEAST_DENSITIES: usize = 4;
 /// Change of 2a − w_c over the range of densities, as a fraction of its mean, up to which w_c hardly depends on them. The
@@ -171,7 +171,7 @@ pub(crate) const LEAST_CONTACTS: f64 = 1.0;
 // Q1: small strain rates.
 
 /// For an answer: four strain rates, five replicates, since each run takes long.
-pub(crate) const Q1_NEEDED: Statistics = Statistics::of(4, 8, 5, 300);
+pub(crate) const Q1_NEEDED: Statistics = Statistics::needed(4, 8, 5);
 /// Errors by which the critical width must fall to turn back; it differs from [`CLEAR`], since the
 /// errors are those of brackets.
 pub(crate) const CLEAR_TURN: f64 = 3.0;
@@ -181,14 +181,14 @@ pub(crate) const HALF: f64 = 0.5;
 // Q2: roughness.
 
 /// For an answer: five lattices are asked for apart.
-pub(crate) const Q2_NEEDED: Statistics = Statistics::of(2, 7, 5, 300);
+pub(crate) const Q2_NEEDED: Statistics = Statistics::needed(2, 7, 5);
 /// Lattices that an answer takes.
 pub(crate) const LEAST_LATTICES: usize = 5;
 
 // Q3 to Q5 and Q11: one parameter varied at a time.
 
 /// For an answer of Q3: seven widths of each value, three replicates, since many values are compared.
-pub(crate) const Q3_NEEDED: Statistics = Statistics::of(1, 7, 3, 300);
+pub(crate) const Q3_NEEDED: Statistics = Statistics::needed(1, 7, 3);
 /// For an answer of Q4: one strain rate, for it is about lengths.
 pub(crate) const Q4_NEEDED: Statistics = F8_NEEDED;
 /// Lengths that an answer to Q4 takes, and lengths of tubes and of sweeps in Q8: an exponent through two has no say.
@@ -198,16 +198,16 @@ pub(crate) const WORSE: f64 = 4.0;
 /// Probability below which pure chance is excluded.
 pub(crate) const EXCLUDED: f64 = 1e-3;
 /// For an answer of Q11: one strain rate, five replicates, since each method is computed anew.
-pub(crate) const Q11_NEEDED: Statistics = Statistics::of(1, 7, 5, 150);
+pub(crate) const Q11_NEEDED: Statistics = Statistics::needed(1, 7, 5);
 
 /// For an answer to Q12, of each tube: widths and replicates at one strain rate. The number of tubes is asked for apart.
-pub(crate) const Q12_NEEDED: Statistics = Statistics::of(1, 7, 3, 150);
+pub(crate) const Q12_NEEDED: Statistics = Statistics::needed(1, 7, 3);
 /// For an answer to Q13: seven occlusions, three replicates.
-pub(crate) const Q13_NEEDED: Statistics = Statistics::of(1, 7, 3, 42);
+pub(crate) const Q13_NEEDED: Statistics = Statistics::needed(1, 7, 3);
 /// For an answer to Q14: without and with a head, three replicates of each drive.
-pub(crate) const Q14_NEEDED: Statistics = Statistics::of(1, 2, 3, 54);
+pub(crate) const Q14_NEEDED: Statistics = Statistics::needed(1, 2, 3);
 /// For an answer to Q15: outlets and replicates.
-pub(crate) const Q15_NEEDED: Statistics = Statistics::of(1, 6, 3, 24);
+pub(crate) const Q15_NEEDED: Statistics = Statistics::needed(1, 6, 3);
 /// Tubes whose critical widths were not known when the predictions were made.
 pub(crate) const LEAST_TESTS: usize = 6;
 /// Part of the measured value by which a prediction without the tube's details may miss it.
@@ -216,20 +216,20 @@ pub(crate) const PREDICTED_WITHIN: f64 = 0.2;
 // Q6 to Q10.
 
 /// For an answer to Q6: six values of the friction, three replicates.
-pub(crate) const Q6_NEEDED: Statistics = Statistics::of(4, 6, 3, 60);
+pub(crate) const Q6_NEEDED: Statistics = Statistics::needed(4, 6, 3);
 
 /// For an answer to Q7: eight bottlenecks a corner, three replicates.
-pub(crate) const Q7_NEEDED: Statistics = Statistics::of(1, 8, 3, 192);
+pub(crate) const Q7_NEEDED: Statistics = Statistics::needed(1, 8, 3);
 
 /// For an answer to Q8: two strain rates, six forces in each of three lengths, two sweeps of each kind.
-pub(crate) const Q8_NEEDED: Statistics = Statistics::of(2, 6, 1, 36);
+pub(crate) const Q8_NEEDED: Statistics = Statistics::needed(2, 6, 1);
 
 /// For an answer to Q9: eight pressures of the sine in either model, three replicates.
-pub(crate) const Q9_NEEDED: Statistics = Statistics::of(1, 8, 3, 66);
+pub(crate) const Q9_NEEDED: Statistics = Statistics::needed(1, 8, 3);
 
 /// For an answer to Q10, of each setting: so many forces and replicates at one strain rate. The number of settings is asked for
 /// apart.
-pub(crate) const Q10_NEEDED: Statistics = Statistics::of(1, 5, 2, 200);
+pub(crate) const Q10_NEEDED: Statistics = Statistics::needed(1, 5, 2);
 /// Settings that it takes: one for each thing that the source does not give.
 pub(crate) const LEAST_SETTINGS: usize = 8;
 /// Forces without a leak from which on a setting is judged: two make one rise.

@@ -12,7 +12,6 @@ pub(super) const CLAIM: Claim = Claim::new("F1", PROSE, STUDIES, examine);
 
 /// What the branch from rest on one wall at one strain rate says.
 struct Kind<'a> {
-    runs: usize,
     branch: Branch<'a>,
     /// Fractions of the runs beyond the jump that stay slow, and of those below it that become fast.
     slow: f64,
@@ -47,7 +46,6 @@ impl<'a> AtRate<'a> for Kind<'a> {
         let fast_point = points.clone().rfind(is_below)?;
         Some(Self {
             comes_near: points.clone().any(is_near),
-            runs: rows.len(),
             slow: fraction(true),
             fast: fraction(false),
             fast_flow: fast_point.flow,
@@ -58,7 +56,7 @@ impl<'a> AtRate<'a> for Kind<'a> {
     }
 
     fn statistics(&self) -> Statistics {
-        self.branch.statistics(self.runs)
+        self.branch.statistics()
     }
 }
 

@@ -15,7 +15,6 @@ struct Jump<'a> {
     height: Option<Uncertain>,
     /// J/Jmax of the runs from rest near the fall, for the histogram.
     near: Vec<f64>,
-    runs: usize,
 }
 
 impl<'a> AtRate<'a> for Jump<'a> {
@@ -33,14 +32,13 @@ impl<'a> AtRate<'a> for Jump<'a> {
         Some(Self {
             near: near.filter(|ratio| ratio.is_finite()).collect(),
             height: branch.jump().map(|jump| jump.height),
-            runs: rows.len(),
             branch,
             fall,
         })
     }
 
     fn statistics(&self) -> Statistics {
-        self.branch.statistics(self.runs)
+        self.branch.statistics()
     }
 }
 

@@ -44,7 +44,7 @@ impl<'a> Density<'a> {
             escaped: leak(rows, critical.map(|width| width.value)),
             near: Line::at_own_threshold(rows).and_then(|line| Near::of(&line)),
             flow: compared.map(|point| point.flow),
-            statistics: branch.statistics(rows.len()),
+            statistics: branch.statistics(),
             branch,
         }
     }

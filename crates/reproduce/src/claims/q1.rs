@@ -52,7 +52,7 @@ impl Line {
             jumps: rest.jumps(),
             both_starts: !jammed.points.is_empty(),
             periods: longest(rows),
-            statistics: rest.statistics(rows.len()),
+            statistics: rest.statistics(),
         })
     }
 

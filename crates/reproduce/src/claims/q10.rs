@@ -149,7 +149,7 @@ impl<'a> Outcome<'a> {
             let is_high = rise.height.value > LEAST_JUMP_AGAINST_FORCE;
             (is_high || self.flow.spans()).then_some(is_high)
         };
-        let flows_back = |point: &Point<'_>| point.flow.is_below(-LEAST_BACK_FLOW);
+        let flows_back = |point: &Point<'_>| is_clearly_below(point, -LEAST_BACK_FLOW);
         [
             self.gives_way().map(|(gave, all)| gave > 0 && gave < all),
             self.rise().and_then(rises),

@@ -150,7 +150,11 @@ impl Prediction {
     fn all_from(known: &[&Tube]) -> [Self; 3] {
         let fitted = |shape: fn(&Tube) -> f64| {
             let ratios = sorted(known.iter().map(|tube| tube.narrowing.value / shape(tube)));
-            let at = |part: f64| ratios[(part * (ratios.len() - 1) as f64).round() as usize];
+            let last = ratios.len().saturating_sub(1) as f64;
+            let at = |part: f64| {
+                let place = (part * last).round() as usize;
+                ratios.get(place).copied().unwrap_or(f64::NAN)
+            };
             Uncertain::normal(at(0.5), 0.5 * (at(0.84) - at(0.16)))
         };
         let of = |name, axis, shape, constant| Self {

@@ -106,12 +106,12 @@ impl<'a> Corner<'a> {
     }
 
     fn is_bistable(&self) -> bool {
-        self.flow.gap().is_some_and(|gap| gap.counts(LEAST_JUMP))
+        self.flow.gap().is_some_and(|gap| gap.rises_by(LEAST_JUMP))
     }
 
     fn flows_back(&self) -> bool {
         let lowest = self.flow.lowest();
-        lowest.is_some_and(|point| point.flow.is_below(-LEAST_BACK_FLOW))
+        lowest.is_some_and(|point| is_clearly_below(point, -LEAST_BACK_FLOW))
     }
 
     fn is_fast(&self) -> bool {

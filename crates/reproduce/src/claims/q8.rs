@@ -67,7 +67,7 @@ impl<'a> Size<'a> {
     /// The largest rise in words.
     fn words(&self) -> Option<String> {
         let rise = self.rise()?;
-        let clear = rise.height.value > 0.0 && rise.counts(LEAST_JUMP);
+        let clear = rise.rises_by(LEAST_JUMP);
         let doubt = if clear { "" } else { " (not clear)" };
         Some(format!("{}{doubt} in {} waves", rise.height, self.waves))
     }

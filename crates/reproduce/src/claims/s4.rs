@@ -12,7 +12,7 @@ pub(super) const CLAIM: Claim = claim("S4", PROSE, BRANCHES, examine);
 /// The forces at which the flow of a line is negative from rest and, where that start was run too, from jammed, unless the
 /// jam lasts there.
 pub(super) fn negative(line: &ForceLine<'_>) -> Vec<f64> {
-    let flows_back = |point: &Point<'_>| is_below(point, -LEAST_BACK_FLOW);
+    let flows_back = |point: &Point<'_>| is_clearly_below(point, -LEAST_BACK_FLOW);
     let lasts = |rest: &Point<'_>, jammed: &Point<'_>| {
         jammed.flow.value > rest.flow.value + LEAST_JUMP_AGAINST_FORCE
     };

@@ -82,7 +82,7 @@ fn smallest<'b, 'a>(tight: &[&'b ForceLine<'a>]) -> Option<(f64, &'b Point<'a>)>
 fn both_flows<'b, 'a>(tight: &[&'b ForceLine<'a>]) -> Option<(&'b ForceLine<'a>, Step)> {
     let apart = |line: &&'b ForceLine<'a>| {
         let gap = line.flow.gap()?;
-        gap.counts(LEAST_JUMP).then_some((*line, gap))
+        gap.rises_by(LEAST_JUMP).then_some((*line, gap))
     };
     let mut all: Vec<_> = tight.iter().filter_map(apart).collect();
     all.sort_by(|one, other| other.1.height.value.total_cmp(&one.1.height.value));
@@ -125,7 +125,7 @@ fn between_prescribed_walls(evidence: &Evidence) -> Result<Option<String>> {
         });
         let (rate, point) =
             flows.min_by(|one, other| one.1.flow.value.total_cmp(&other.1.flow.value))?;
-        let is_negative = is_below(&point, 0.0);
+        let is_negative = is_clearly_below(&point, 0.0);
         let (flow, width) = (point.flow, point.control);
         is_negative.then(|| PROSE.text("smallest", values!(flow, width, rate, tube)))
     };

@@ -110,9 +110,9 @@ impl<'a> Deck<'a> {
             let again = begun.as_ref();
             again.map_or(State::Pending, |again| again.state(run.identity))
         };
-        let published = survey.plan.runs().iter();
-        let published = published.filter(|run| survey.is_imported(run.identity));
-        let mut cards: Vec<Card> = published
+        let runs = survey.plan.runs().iter();
+        let mut cards: Vec<Card> = runs
+            .filter(|run| survey.is_imported(run.identity))
             .map(|run| {
                 let length = lengths.get(&run.identity).copied().unwrap_or(0.0);
                 let speed = speed(&survey.plan.point(run).configuration);
@@ -125,6 +125,7 @@ impl<'a> Deck<'a> {
         if cards.is_empty() {
             return Ok(None);
         }
+        let published = cards.len();
         cards.sort_by_cached_key(|card| place(sample.seed, card.run.identity));
         match sample.extent {
             Extent::Part(part) => cards.truncate((part * cards.len() as f64).ceil() as usize),
@@ -134,7 +135,7 @@ impl<'a> Deck<'a> {
             }
         }
         let within_reach = match sample.extent {
-            Extent::Part(_) => lengths.len(),
+            Extent::Part(_) => published,
             Extent::Time(_) => cards.len(),
         };
         cards.retain(|card| !matches!(state(&card.run), State::Done | State::Failed));
