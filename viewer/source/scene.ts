@@ -104,7 +104,7 @@ export class Scene {
   }
 
   private own(kind: number, side: Side, glass: number): Uniforms {
-    const stone = new three.Color().setRGB(206 / 255, 200 / 255, 190 / 255);
+    const stone = new three.Color().setRGB(207 / 255, 202 / 255, 193 / 255);
     return {
       kind: { value: kind },
       side: { value: side },

@@ -124,7 +124,7 @@ void main() {
   vec3 side = normalize(cross(end - begin, middle));
   part = clamp(force, 0.0, 1.0);
   across = position.y;
-  gl_Position = projectionMatrix * vec4(middle + position.y * (0.015 + 0.11 * part) * side, 1.0);
+  gl_Position = projectionMatrix * vec4(middle + position.y * (0.02 + 0.11 * part) * side, 1.0);
 }`;
 
 export const BAND_FRAGMENT = /* glsl */ `

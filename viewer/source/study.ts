@@ -123,11 +123,10 @@ class StudyPage {
     const parts = rest.map(([state, count]) => `${count} ${states[state] ?? state}`);
     element("facts").textContent = [name, `${results.rows.toLocaleString("en")} ${results.rows === 1 ? "run" : "runs"} done`, ...parts].join(" · ");
     element("refresh").hidden = !growing;
-    const folder = /^[\w./-]+$/.test(store ?? "") ? store : `'${store}'`;
     const none = this.choice.x ? "No finished run has such a value." : "Nothing can go across: the finished runs differ in no number. study export writes them as a table.";
     element("empty").textContent = results.rows > 0
       ? none
-      : `No run of this study has ended yet. This computes them: peristalsis study run ${folder}/study.toml --store ${folder}`;
+      : `No run of this study has ended yet. This computes them: peristalsis study run ${store}/study.toml --store ${store}`;
   }
 
   private showChoices(): void {

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
-use peristalsis_formats::FormatError;
+use peristalsis_formats::{FormatError, shell_word};
 use peristalsis_reproduce::ReproduceError;
 use peristalsis_run::{RenderError, RunError, RunFolder, files};
 use peristalsis_study::{SEAL, StudyError};
@@ -133,7 +133,7 @@ impl Failure {
                     true => "nothing that was measured is lost",
                     false => "what could not be saved either is computed again",
                 },
-                quoted(folder)
+                shell_word(folder)
             )),
             Self::Results { folder, source: RunError::Format(error) } if !is_closed(error) => {
                 failed(unwritten(folder))
@@ -192,21 +192,6 @@ impl Failure {
     }
 }
 
-/// A path as one word of a POSIX shell.
-pub(crate) fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = |letter: char| {
-        letter.is_ascii_alphanumeric()
-            || "/._-+=:@%".contains(letter)
-            || cfg!(windows) && letter == '\\'
-    };
-    if !text.is_empty() && text.chars().all(plain) {
-        text
-    } else {
-        format!("'{}'", text.replace('\'', r"'\''"))
-    }
-}
-
 /// An exit code, and what to do.
 type Advice = (u8, Option<String>);
 
@@ -238,7 +223,7 @@ fn is_full(kind: ErrorKind) -> bool {
 
 /// What to do about results that could not all be written.
 fn unwritten(folder: &RunFolder) -> String {
-    let path = quoted(folder.path());
+    let path = shell_word(folder.path());
     if !folder.path().exists() {
         return "its folder is gone, and what was in it: begin anew".to_owned();
     }
@@ -279,13 +264,11 @@ fn of_run(error: &RunError) -> Advice {
             "ask for at least as much with --periods or --duration, or begin anew in another folder: peristalsis run \
              DIR/config.toml --set run.periods=N --out OTHER",
         ),
-        RunError::NothingToResume { folder, reason } if reason.contains("complete") => {
-            wrong(format!(
-                "let it go on: peristalsis run --resume {0} --periods N (or --duration T), N beyond its end; draw its figures \
-                 again: peristalsis figures {0}",
-                quoted(folder)
-            ))
-        }
+        RunError::Complete { folder } => wrong(format!(
+            "let it go on: peristalsis run --resume {0} --periods N (or --duration T), N beyond its end; draw its figures \
+             again: peristalsis figures {0}",
+            shell_word(folder)
+        )),
         RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }) => {
             wrong(FEWER_GRAINS)
         }
@@ -305,7 +288,7 @@ fn of_run(error: &RunError) -> Advice {
             };
             wrong(format!(
                 "{keeps_none}begin it anew in another folder: peristalsis run {} --out DIR",
-                quoted(&folder.join(files::CONFIGURATION))
+                shell_word(&folder.join(files::CONFIGURATION))
             ))
         }
         RunError::NoRun { .. } | RunError::NothingToResume { .. } => wrong(
@@ -390,7 +373,7 @@ fn of_state(path: &Path, source: &RunError) -> String {
     if !configuration.is_file() {
         return remedy.to_owned();
     }
-    let again = format!("peristalsis run {} --out DIR", quoted(&configuration));
+    let again = format!("peristalsis run {} --out DIR", shell_word(&configuration));
     format!("{remedy}, or begin anew in another folder: {again}")
 }
 

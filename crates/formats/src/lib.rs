@@ -37,6 +37,28 @@ pub fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// A path as one word of a POSIX shell.
+///
+/// ```
+/// use peristalsis_formats::shell_word;
+///
+/// assert_eq!(shell_word("/home/me/a.toml".as_ref()), "/home/me/a.toml");
+/// assert_eq!(shell_word("it's $HOME".as_ref()), r"'it'\''s $HOME'");
+/// ```
+pub fn shell_word(path: &std::path::Path) -> String {
+    let text = path.display().to_string();
+    let plain = |letter: char| {
+        letter.is_ascii_alphanumeric()
+            || "/._-+=:@%".contains(letter)
+            || cfg!(windows) && letter == '\\'
+    };
+    if !text.is_empty() && text.chars().all(plain) {
+        text
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    }
+}
+
 /// Reads the table in a file, as Parquet where its name ends so and as CSV elsewhere.
 ///
 /// # Errors

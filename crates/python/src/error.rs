@@ -132,7 +132,7 @@ pub(crate) fn of_run(error: RunError) -> PyErr {
             SnapshotError::new_err(text)
         }
         RunError::State { .. } => SnapshotError::new_err(text),
-        RunError::NoRun { .. } | RunError::NothingToResume { .. } => {
+        RunError::NoRun { .. } | RunError::NothingToResume { .. } | RunError::Complete { .. } => {
             PyFileNotFoundError::new_err(text)
         }
         RunError::Folder { .. } | RunError::AtWork { .. } => PyOSError::new_err(text),

@@ -75,7 +75,7 @@ mod _core {
     #[pymodule_export]
     use crate::table::Table;
     #[pymodule_export]
-    use crate::title::title;
+    use crate::title::{title, with_error};
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "the name in Python")]

@@ -1,4 +1,4 @@
-//! The title of a run's figures, for Matplotlib.
+//! Title and numbers of figures, for Matplotlib.
 
 use peristalsis_figures::{Letter, Level, letters};
 use pyo3::prelude::*;
@@ -11,6 +11,12 @@ const DOT_ABOVE: char = '\u{307}';
 #[pyfunction]
 pub(crate) fn title(py: Python<'_>, run: &Run) -> String {
     mathematical(&run.look(py, |run| peristalsis_run::title(run.configuration())))
+}
+
+/// A value with its standard error, by the rule of the command line's figures.
+#[pyfunction]
+pub(crate) fn with_error(value: f64, error: f64) -> String {
+    mathematical(&peristalsis_analysis::number::with_error(value, error))
 }
 
 /// Markup of our figures as Matplotlib reads it.

@@ -108,6 +108,12 @@ pub enum RunError {
         /// Why not.
         reason: String,
     },
+    /// A run has gone as far as it was to go.
+    #[error("{} holds no run that can be continued: it is complete", folder.display())]
+    Complete {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// A run has gone further than it is asked to go.
     #[error("the run has done {} {unit} already, and the length asked for, in whole samples, is {}", (1e6 * done).round() / 1e6, (1e6 * asked).round() / 1e6)]
     TooShort {

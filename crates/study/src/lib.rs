@@ -49,5 +49,5 @@ pub use row_difference::{RESUMMED, RowDifference};
 pub use scheduler::{Board, Effort, Ending, Working, work_on};
 pub use specification::{Specification, schema};
 pub use store::{
-    Entry, Exported, Packed, SEAL, STUDY, Staleness, State, Store, Survey, Verification,
+    Entry, Exported, Packed, SEAL, STUDY, Staleness, State, Store, Survey, Verification, not_whole,
 };

@@ -11,8 +11,8 @@ use crate::welcome::Welcome;
 pub struct Onlooker {
     /// Whether frames hold the contacts of the grains.
     contacts: bool,
-    /// Rows of the time series that the page has got.
-    told: usize,
+    /// Samples that the page has got.
+    told: u64,
     /// The warnings of the run as they were after so many periods.
     warned: Option<(u64, Vec<Warning>)>,
 }
@@ -26,7 +26,7 @@ impl Onlooker {
         welcome.driven = Driven::of(run);
         welcome.ranges.friction = None;
         welcome.rows = history(rows(run, 0));
-        self.told = run.recorder().samples().len();
+        self.told = run.recorder().taken();
         welcome.to_json()
     }
 
@@ -45,14 +45,16 @@ impl Onlooker {
         if self.warned.as_ref().is_none_or(|(at, _)| *at != periods) {
             self.warned = Some((periods, run.warnings()));
         }
+        // A kept sample may cover several; the last one may not yet have all of them.
+        let first = self.told.div_ceil(run.recorder().intervals()) as usize;
         let head = Head {
             playing,
             speed,
-            rows: rows(run, self.told),
+            rows: rows(run, first),
             warnings: self.warned.iter().flat_map(|it| it.1.clone()).collect(),
             ..Head::of(run, &contacts)
         };
-        self.told = run.recorder().samples().len();
+        self.told = run.recorder().taken();
         of_run(&head, run, &contacts)
     }
 }

@@ -127,9 +127,11 @@ impl Timeline<'_> {
     }
 }
 
-/// Rows of the time series of a run from a number on.
+/// Rows of the time series of a run from a kept sample on; the number of a row counts the samples before it, those that are
+/// kept no more included.
 pub(crate) fn rows(run: &Run, from: usize) -> Vec<Row> {
     let timeline = Timeline(run.configuration());
+    let each = run.recorder().intervals() as usize;
     let samples = run.recorder().samples();
     // Those before are there for the means.
     let begin = samples.get(from).map_or(samples.len(), |first| {
@@ -138,7 +140,7 @@ pub(crate) fn rows(run: &Run, from: usize) -> Vec<Row> {
     });
     let rows = samples.iter().enumerate().skip(begin);
     let mut rows: Vec<Row> = rows
-        .map(|(number, sample)| timeline.row_of(number, sample))
+        .map(|(place, sample)| timeline.row_of(place * each, sample))
         .collect();
     average(&mut rows);
     rows.split_off(from.min(samples.len()) - begin)

@@ -1,11 +1,12 @@
 //! A run that is watched and driven: advances, changes, and says what it looks like.
 
 use std::cell::Cell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::Configuration;
+use peristalsis_formats::shell_word;
 use peristalsis_observe::MOST_ROWS;
 use peristalsis_run::{Run, RunError, RunFolder, Warning};
 
@@ -25,8 +26,6 @@ const PATIENCE: f64 = 0.004;
 const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed more sees a gap.
 const ROWS: usize = 256;
-/// Saved states that are looked through for a free name.
-const SAVES: u32 = 9999;
 
 /// The title of a tube, the place of its saved states, and its time series from an earlier computation.
 #[derive(Clone, Debug)]
@@ -314,7 +313,7 @@ impl Tube {
         // A static wave has no periods that could be added.
         if configuration.run.periods.is_some() {
             let each = u64::from(configuration.observe.samples_per_period);
-            let taken = self.run.recorder().samples().len() as u64;
+            let taken = self.run.recorder().taken();
             let samples = configuration.run.samples.max(taken + 10 * each);
             let periods = samples as f64 / each as f64;
             configuration.run.duration *= samples as f64 / configuration.run.samples as f64;
@@ -331,22 +330,15 @@ impl Tube {
         let (folder, state) = match &self.labels.saves {
             Saves::Page => (None, Some(STANDARD.encode(run.to_snapshot()?))),
             Saves::Folders { inside, stem } => {
-                let mut names = (1..=SAVES).map(|number| inside.join(format!("{stem}-{number}")));
-                let Some(path) = names.find(|path| path.symlink_metadata().is_err()) else {
-                    return Err(RunError::Folder {
-                        folder: inside.clone(),
-                        source: std::io::ErrorKind::AlreadyExists.into(),
-                    });
-                };
-                let folder = RunFolder::create(&path, run.configuration())?;
+                let folder = RunFolder::create_next(inside, stem, run.configuration())?;
                 folder.save_state(&run)?;
-                (Some(path.display().to_string()), None)
+                (Some(folder.path().to_owned()), None)
             }
         };
-        let place = folder.as_deref().unwrap_or("FOLDER");
+        let place = folder.as_deref().unwrap_or(Path::new("FOLDER"));
         let saved = Notice::Saved {
-            command: format!("peristalsis run --resume {place}"),
-            folder,
+            command: format!("peristalsis run --resume {}", shell_word(place)),
+            folder: folder.map(|folder| folder.display().to_string()),
             toml,
             repeats: (self.course.turns().iter()).all(|turn| turn.parameter != Steered::Friction),
             state,

@@ -73,6 +73,9 @@ class Widget(anywidget.AnyWidget):
         self._shown = self._went = 0.0
         #: Steps left over from earlier frames, and seconds of a step.
         self._due, self._step_seconds = 0.0, 0.0
+        #: Steps of a period of the drive's own strain rate; a static wave has no period, and its time is counted in t.
+        configuration = simulation.configuration
+        self._steps_per_period = 1.0 / (configuration["drive.strain_rate"] or 1.0) / configuration.time_step
         super().__init__(height=height, **self._driven())
         self._telling = False
         self.on_msg(self._hear)
@@ -130,9 +133,7 @@ class Widget(anywidget.AnyWidget):
         most = max(1, int(_FRAME / self._step_seconds)) if self._step_seconds else 1
         steps = most
         if self.speed is not None:
-            # A static wave has no period: its time is counted in t.
-            rate = self._simulation._run.driven("strain_rate") or 1.0
-            self._due += self.speed * passed / rate / self._simulation.configuration.time_step
+            self._due += self.speed * passed * self._steps_per_period
             steps = min(most, int(self._due))
             self._due = min(self._due - steps, most)
         if steps:

@@ -20,6 +20,7 @@ from . import newtonian
 from ._given import of_kind
 from ._simulation import Simulation
 from ._snapshot import snapshot
+from ._core import with_error
 from ._fit import set_legend, set_title
 from ._style import ALONG, COLOURS, DOUBLE_COLUMN, GREY, SINGLE_COLUMN, STYLE, axes, drawing
 from ._title import SEPARATOR, title, unit, unit_of
@@ -195,13 +196,7 @@ def _late_mean(ax: Axes, summary: Mapping[str, Any], last: float) -> None:
     if None not in (mean, error, late) and np.isfinite([mean, error, late]).all():
         span = np.array([last - late, last])
         ax.fill_between(span, mean - error, mean + error, color=ORANGE, alpha=0.25, linewidth=0)
-        ax.plot(span, [mean, mean], color=ORANGE, label=f"late mean {_with_error(mean, error)}")
-
-
-def _with_error(value: float, error: float) -> str:
-    """A number to the first digit of its error."""
-    digits = max(0, -math.floor(math.log10(error))) if error > 0 else 4
-    return f"{value:.{digits}f} ± {error:.{digits}f}".replace("-", "\u2212")
+        ax.plot(span, [mean, mean], color=ORANGE, label=f"late mean {with_error(mean, error)}")
 
 
 def profile(simulation: Simulation, column: str = "density", ax: Axes | None = None, *, label: str | None = None, **line: Any) -> Axes:

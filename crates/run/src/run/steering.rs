@@ -157,7 +157,7 @@ impl Run {
     /// would have them from the start.
     ///
     /// # Errors
-    /// [`RunError::Steering`] where grains have no friction, or for a coefficient that is not positive.
+    /// [`RunError::Steering`] where grains have no friction, or for a coefficient that is not above 0, or above 1e6.
     pub fn set_friction(&mut self, kinetic: f64) -> Result<(), RunError> {
         let mut configuration = self.configuration.clone();
         let Some(friction) = &mut configuration.contact.friction else {
@@ -165,7 +165,9 @@ impl Run {
             return Err(RunError::Steering { reason });
         };
         if !(kinetic > 0.0 && kinetic <= LARGEST) {
-            let reason = format!("a coefficient of friction of {kinetic} is not positive");
+            let reason = format!(
+                "a coefficient of friction of {kinetic} is not above 0, or above {LARGEST:e}"
+            );
             return Err(RunError::Steering { reason });
         }
         let proportion = if friction.kinetic_friction > 0.0 {

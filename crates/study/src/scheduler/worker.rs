@@ -9,7 +9,7 @@ use peristalsis_run::{Pace, Run, RunError, Status, Summary};
 use super::{IDLE, Shared, Working};
 use crate::error::{Result, StudyError};
 use crate::identity::Identity;
-use crate::store::{Assignment, Claim, Entry, RunFiles, State, Verdict, done};
+use crate::store::{Assignment, Claim, Entry, RunFiles, State, Verdict, done, not_whole};
 
 /// State of a run that has ended, well or not, or was saved to go on later; `None` where another process has it now.
 type Outcome = Option<Entry>;
@@ -88,9 +88,7 @@ fn carry_out(
         Verdict::Failed(reason) => return Ok(Some(Entry::new(State::Failed, Some(reason)))),
         Verdict::Damaged(reason) => {
             shared.store.quarantine_run(identity, &reason)?;
-            shared.tell(format!(
-                "the files of run {identity} differ from its seal ({reason}): moved aside, computed again"
-            ));
+            shared.tell(not_whole(identity, &reason));
         }
         Verdict::Nothing | Verdict::Checkpointed => {}
     }

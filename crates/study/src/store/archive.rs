@@ -21,8 +21,8 @@ pub struct Packed {
     /// Runs that were taken over. An import takes runs that were not finished here; those of an archive where their hashes
     /// check.
     pub taken: usize,
-    /// Runs of an archive that were left out since they are not finished or their files differ from their seal, with the
-    /// reason.
+    /// Runs that were left out of an archive, or not taken from it, since they are not finished or their files differ from
+    /// their seal, with the reason.
     pub refused: Vec<(Identity, String)>,
     /// Runs of a table whose row differs from that of the run that is finished here.
     pub different: usize,
@@ -52,12 +52,12 @@ impl Store {
             let mut builder = tar::Builder::new(io::BufWriter::new(file));
             for identity in &identities {
                 let files = self.run_files(*identity);
-                if !matches!(files.verdict(None), Verdict::Done { .. }) {
+                if let Some(reason) = unfinished(files.verdict(None)) {
+                    packed.refused.push((*identity, reason));
                     continue;
                 }
                 append(&mut builder, *identity, &files)?;
                 packed.runs += 1;
-                packed.taken += 1;
             }
             builder.into_inner()?.flush()
         })?;
@@ -114,14 +114,7 @@ impl Store {
                 continue;
             }
             let unpacked = RunFiles::new(scratch, *identity);
-            let reason = match unpacked.verdict(None) {
-                Verdict::Done { .. } => None,
-                Verdict::Damaged(reason) => Some(reason),
-                Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
-                    Some("it is not finished".to_owned())
-                }
-            };
-            if let Some(reason) = reason {
+            if let Some(reason) = unfinished(unpacked.verdict(None)) {
                 packed.refused.push((*identity, reason));
                 continue;
             }
@@ -138,6 +131,17 @@ impl Store {
             }
         }
         Ok(packed)
+    }
+}
+
+/// Why the files of a run are not those of a finished one; `None` where they are.
+fn unfinished(verdict: Verdict) -> Option<String> {
+    match verdict {
+        Verdict::Done { .. } => None,
+        Verdict::Damaged(reason) => Some(reason),
+        Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
+            Some("it is not finished".to_owned())
+        }
     }
 }
 

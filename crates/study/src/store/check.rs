@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use peristalsis_formats::atomic;
 
 use super::{
-    Entry, INDEX, Index, LEASE_TIMEOUT, QUARANTINE, REASON, RUNS, State, Store, Verdict, done, free,
+    Entry, GONE, INDEX, Index, LEASE_TIMEOUT, QUARANTINE, REASON, RUNS, State, Store, Verdict,
+    done, free, not_whole,
 };
 use crate::error::{Result, StudyError};
 use crate::identity::Identity;
@@ -59,15 +60,11 @@ impl Store {
                 }
                 Verdict::Damaged(reason) => {
                     self.quarantine_run(identity, &reason)?;
-                    news.push(format!(
-                        "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
-                    ));
+                    news.push(not_whole(identity, &reason));
                     changed.push((identity, Entry::new(State::Quarantined, Some(reason))));
                 }
                 Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
-                    news.push(format!(
-                        "run {identity} was finished, and its files are gone: to be computed again"
-                    ));
+                    news.push(not_whole(identity, GONE));
                     changed.push((identity, Entry::new(State::Pending, None)));
                 }
             }
@@ -116,8 +113,7 @@ impl Store {
                 continue;
             }
             if entry.is_computed() {
-                let reason = "its files are gone".to_owned();
-                found.quarantined.push((identity, reason));
+                found.quarantined.push((identity, GONE.to_owned()));
             } else if let Some(table) = entry.table() {
                 *found.lost_tables.entry(table.to_owned()).or_default() += 1;
             }

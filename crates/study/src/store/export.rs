@@ -9,7 +9,7 @@ use peristalsis_run::files;
 use serde_json::Value;
 
 use super::run_files::{TIMES, TIMING};
-use super::{Index, Store, Survey, Verdict};
+use super::{GONE, Index, Store, Survey, Verdict};
 use crate::error::{Result, StudyError};
 use crate::identity::{Identity, PHYSICS_VERSION};
 use crate::plan::{Plan, PlannedRun, Setting, SettingValue};
@@ -35,7 +35,7 @@ pub struct Exported {
     pub failed: usize,
     /// Finished runs that have no time series here: they were imported as rows, or the study does not keep J/Jmax.
     pub without_series: usize,
-    /// Runs whose files differ from their seal; they were moved aside, and are missing.
+    /// Runs whose files are not those of their seal, with the reason; they are missing.
     pub quarantined: Vec<(Identity, String)>,
 }
 
@@ -179,17 +179,15 @@ impl Store {
                     row: *row,
                     imported: false,
                 }),
-                other => {
-                    let reason = match other {
-                        Verdict::Damaged(reason) => reason,
-                        _ => "its files are gone".to_owned(),
-                    };
-                    if self.run_folder(run.identity).exists() {
-                        self.quarantine_run(run.identity, &reason)?;
-                    }
+                Verdict::Damaged(reason) => {
+                    self.quarantine_run(run.identity, &reason)?;
                     let entry = Entry::new(State::Quarantined, Some(reason.clone()));
                     index.note([(run.identity, &entry)])?;
                     quarantined.push((run.identity, reason));
+                }
+                Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
+                    index.note([(run.identity, &Entry::new(State::Pending, None))])?;
+                    quarantined.push((run.identity, GONE.to_owned()));
                 }
             }
         }

@@ -56,6 +56,16 @@ const QUARANTINE: &str = "quarantine";
 const IMPORTED: &str = "imported";
 const REASON: &str = "reason.txt";
 
+/// Of a finished run, that there are no files.
+const GONE: &str = "its files are gone";
+
+/// Of a finished run whose files are not those of its seal: what becomes of them, and of the run.
+pub fn not_whole(identity: Identity, reason: &str) -> String {
+    format!(
+        "the files of run {identity} are not those of its seal ({reason}): what is there is moved aside, and the run is to be computed again"
+    )
+}
+
 /// How long an owner of whom nothing else is known may be silent before its lease is void.
 pub(crate) const LEASE_TIMEOUT: Duration = Duration::from_secs(180);
 

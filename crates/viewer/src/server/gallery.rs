@@ -18,7 +18,7 @@ use super::study::{Study, StudyRun};
 use crate::tube::{Labels, Saves};
 
 /// Runs that stay open at a time.
-const OPEN: usize = 4;
+pub(super) const OPEN: usize = 4;
 
 /// A run: the number of its study, and its number in the study.
 type Place = (usize, usize);

@@ -106,7 +106,11 @@ impl Recording {
         let (wall_spheres, rings) = of_wall(&self.wall);
         let slack = SLACK * timeline.unit_period();
         let run = &self.configuration.run;
-        let interval = run.steps_per_sample as f64 * run.time_step + slack;
+        // In a very long run a kept sample covers several.
+        let interval = match &*self.samples {
+            [first, second, ..] => second.time - first.time,
+            _ => run.steps_per_sample as f64 * run.time_step,
+        } + slack;
         let is_taken = |sample: &Sample| sample.time <= frame.time + slack;
         let taken = self.samples.partition_point(is_taken);
         // What went on from a saved state has frames long after the last sample. Frames before the first one have none.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peristalsis_configuration::{Configuration, InitialState};
-use peristalsis_formats::{Column, Table, Values, parquet};
+use peristalsis_formats::{Column, Table, Values, parquet, shell_word};
 use peristalsis_run::{TrajectoryFormat, files, label, row_columns};
 use peristalsis_study::{Finding, Identity, Plan, PlannedRun, Specification, State, Store, refine};
 use serde::Serialize;
@@ -63,7 +63,7 @@ pub(crate) struct Shown<'a> {
     counts: &'a BTreeMap<State, usize>,
     /// Whether there may be more rows later.
     growing: bool,
-    /// The folder of its runs; null for a table alone.
+    /// The folder of its runs, as a word of a shell; null for a table alone.
     store: Option<String>,
 }
 
@@ -220,10 +220,7 @@ impl Study {
             runs: self.numbers_of_rows(),
             counts: &self.counts,
             growing: self.store.is_some() && self.counts.keys().any(|it| it.is_unfinished()),
-            store: self
-                .store
-                .as_ref()
-                .map(|store| store.path().display().to_string()),
+            store: self.store.as_ref().map(|store| shell_word(store.path())),
         }
     }
 

@@ -25,7 +25,7 @@ use tokio::sync::Semaphore;
 use super::assets::asset;
 use super::error::ViewerError;
 use super::figure::Figure;
-use super::gallery::{Closed, Gallery};
+use super::gallery::{Closed, Gallery, OPEN};
 use super::guard::{Token, is_loopback, is_own};
 use super::recording::Recording;
 use super::recording_host::RecordingHost;
@@ -366,7 +366,9 @@ async fn live_in_study(
     match gallery.enter((study, run)) {
         Ok(session) => talk(&shared, session, upgrade),
         Err(Closed::Unknown) => StatusCode::NOT_FOUND.into_response(),
-        Err(Closed::Full) => busy(),
+        Err(Closed::Full) => busy(&format!(
+            "{OPEN} runs of this study are open, as many as this viewer computes"
+        )),
         Err(Closed::Failed(error)) => {
             (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response()
         }
@@ -377,7 +379,9 @@ async fn live_in_study(
 fn talk(shared: &Shared, session: Session, upgrade: Upgrade) -> Response {
     // Before the question whether it asks for a WebSocket, so that a page can ask why it got none.
     let Ok(place) = Arc::clone(&shared.clients).try_acquire_owned() else {
-        return busy();
+        return busy(&format!(
+            "{CLIENTS} pages are open, as many as this viewer serves"
+        ));
     };
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade,
@@ -392,9 +396,9 @@ fn talk(shared: &Shared, session: Session, upgrade: Upgrade) -> Response {
         })
 }
 
-fn busy() -> Response {
+/// That as much is open as this viewer serves.
+fn busy(reason: &str) -> Response {
     let wait = [(header::RETRY_AFTER, "5")];
-    let reason =
-        format!("{CLIENTS} pages are open, as many as this viewer serves: close one of them");
+    let reason = format!("{reason}: close one of them");
     (StatusCode::SERVICE_UNAVAILABLE, wait, reason).into_response()
 }

@@ -18,10 +18,11 @@ use peristalsis_run::{
 use crate::arguments::{RunArguments, Threads};
 use crate::commands::trajectory::{in_words as in_one_line, request};
 use crate::commands::{counted, packing, print, rounded, say, tell, warn_besides};
-use crate::failure::{Failure, quoted};
+use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
 use crate::stop::Stop;
+use peristalsis_formats::shell_word;
 
 pub(crate) use self::words::{DISCHARGE, MASS_FLOW, measured};
 use self::words::{how_far, in_words};
@@ -78,7 +79,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             _ => return Err(error),
         },
     }
-    let place = quoted(work.folder.path());
+    let place = shell_word(work.folder.path());
     match outcome.ending {
         Ending::Unwritten(source) => Err(Failure::Trajectory {
             folder: work.folder.path().to_owned(),
@@ -287,8 +288,8 @@ fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Re
             && !arguments.csv
             && (source.is_file() || RunFolder::named(source).has_final_results_of(&run)) =>
         {
-            let (folder, reason) = (source.to_owned(), "it is complete".to_owned());
-            return Err(RunError::NothingToResume { folder, reason }.into());
+            let folder = source.to_owned();
+            return Err(RunError::Complete { folder }.into());
         }
         None => return Ok(run),
     };

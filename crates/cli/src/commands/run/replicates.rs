@@ -19,10 +19,11 @@ use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, not_diverged, packed};
 use crate::arguments::{RunArguments, Seeds, Threads};
 use crate::commands::{code_of, counted, print, print_json, say, significant, tell, warn_besides};
-use crate::failure::{Failure, quoted};
+use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, name};
 use crate::stop::Stop;
+use peristalsis_formats::shell_word;
 
 /// Name of the folder of a replicate, before its seed.
 const STEM: &str = "seed-";
@@ -359,7 +360,7 @@ fn conclude(
         }
         print(&text)?;
     }
-    let (place, complete) = (quoted(folder), counted(complete.len(), "seed"));
+    let (place, complete) = (shell_word(folder), counted(complete.len(), "seed"));
     let mut is_well = true;
     for (seed, _, outcome) in worked {
         let failure = match outcome {

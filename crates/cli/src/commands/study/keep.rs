@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use peristalsis_study::{Identity, State, Store, Verification};
+use peristalsis_study::{Identity, State, Store, Verification, not_whole};
 
 use super::{ExportArguments, ImportArguments, PackArguments, RetryArguments, StoreArguments};
 use crate::commands::{code_of, counted, print, say, say_if_replaced};
@@ -71,11 +71,8 @@ fn in_words(found: &Verification) -> String {
 
 /// Messages about runs whose files were not whole.
 fn moved_aside(runs: &[(Identity, String)]) -> impl Iterator<Item = String> {
-    runs.iter().map(|(identity, reason)| {
-        format!(
-            "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
-        )
-    })
+    runs.iter()
+        .map(|(identity, reason)| not_whole(*identity, reason))
 }
 
 pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
@@ -133,10 +130,14 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
             counted(packed.without_files, "finished run")
         ));
     }
+    for (identity, reason) in &packed.refused {
+        say(&format!("run {identity} is left out: {reason}"));
+    }
     print(&format!(
         "{} in {archive}\n",
         counted(packed.runs, "finished run")
-    ))
+    ))?;
+    Ok(code_of(packed.refused.is_empty()))
 }
 
 pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {

@@ -8,9 +8,10 @@ use super::progress::StudyDisplay;
 use super::status::print_status;
 use super::{RunArguments, store_path};
 use crate::commands::{counted, say, tell};
-use crate::failure::{Failure, quoted};
+use crate::failure::Failure;
 use crate::sources;
 use crate::stop::Stop;
+use peristalsis_formats::shell_word;
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
@@ -32,7 +33,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let survey = store.survey()?;
     print_status(arguments.json, &store, &survey)?;
     let tell = |text: String| tell(arguments.quiet, &text);
-    let (file, place) = (quoted(&arguments.file), quoted(&path));
+    let (file, place) = (shell_word(&arguments.file), shell_word(&path));
     let again = format!("go on with: peristalsis study run {file} --store {place}");
     match ending {
         Ending::Complete => {
