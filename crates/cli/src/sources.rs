@@ -5,10 +5,10 @@ use std::sync::OnceLock;
 
 use peristalsis_configuration::{Configuration, SourceFile, Sources, preset, preset_names};
 use peristalsis_engine::EngineError;
-use peristalsis_formats::checkpoint;
+use peristalsis_formats::{checkpoint, shell_word};
 use peristalsis_reproduce::design::is_design;
 use peristalsis_run::RunError;
-use peristalsis_study::Specification;
+use peristalsis_study::{STUDY, Specification};
 
 use crate::arguments::ConfigurationArguments;
 use crate::failure::Failure;
@@ -18,6 +18,10 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
     if arguments.file.is_none() && arguments.preset.is_none() && arguments.overrides.is_empty() {
         let reason = "no configuration: give a FILE or a --preset";
         return Err(Failure::usage(reason, known_presets()));
+    }
+    if let Some(key) = arguments.overrides.iter().find(|it| !it.contains('=')) {
+        let reason = format!("--set {key} has no `=`");
+        return Err(Failure::usage(reason, format!("write --set {key}=VALUE")));
     }
     let file = name_and_text(arguments)?;
     if let Some((name, text)) = &file
@@ -110,6 +114,14 @@ fn is_a_study(text: &str) -> bool {
 
 /// The study that a file describes.
 pub(crate) fn study(path: &Path) -> Result<Specification, Failure> {
+    let of_store = path.join(STUDY);
+    if of_store.is_file() {
+        let (file, store) = (shell_word(&of_store), shell_word(path));
+        return Err(Failure::usage(
+            format!("{} is a store, not the file of a study", path.display()),
+            format!("use its file: {file} --store {store}"),
+        ));
+    }
     let of_one_run = |text: &str| {
         let tables = ["[drive]", "[tube]", "[grains]", "[run]"];
         !is_a_study(text) && text.lines().any(|line| tables.contains(&line.trim()))

@@ -126,12 +126,13 @@ fn read_override(source: &Arc<Source>) -> Result<Table, String> {
     }
 }
 
-/// Letters, digits, `_` and `-`, beginning with a letter: a name that needs no quotes on the command line.
+/// Letters, digits and `_-./`, beginning with a letter, `.` or `/`: a name, of a file too, that needs no quotes on the
+/// command line.
 fn is_bare_word(word: &str) -> bool {
-    word.starts_with(|first: char| first.is_ascii_alphabetic())
+    word.starts_with(|first: char| first.is_ascii_alphabetic() || "./".contains(first))
         && word
             .chars()
-            .all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter))
+            .all(|letter| letter.is_ascii_alphanumeric() || "_-./".contains(letter))
 }
 
 /// Replaces the value at the end of a chain of tables with one key each.

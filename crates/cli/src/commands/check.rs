@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use peristalsis_analysis::number::bytes;
-use peristalsis_configuration::Kernel;
+use peristalsis_configuration::{HOUR, Kernel};
 use peristalsis_engine::{SPHERES_OF_A_THREAD, processors};
 use peristalsis_run::{Estimate, estimate};
 
@@ -39,7 +39,9 @@ fn tube(estimate: &Estimate) -> Vec<String> {
     let waiting = match estimate.waiting_grains {
         None | Some(0) => String::new(),
         Some(waiting) => {
-            format!(", of which {waiting} and those that would stand between outlet and inlet wait")
+            format!(
+                "; {waiting} of them wait outside, and so do those without a place between outlet and inlet"
+            )
         }
     };
     let wall = match estimate.wall_spheres {
@@ -48,7 +50,7 @@ fn tube(estimate: &Estimate) -> Vec<String> {
     };
     let mut lines = vec![
         format!(
-            "grains            {} (volume fraction {:.4}, number density {:.4} d^-3){waiting}",
+            "grains            {} (volume fraction {:.4}, number density {:.4}){waiting}",
             estimate.grains, estimate.volume_fraction, estimate.number_density
         ),
         format!(
@@ -71,7 +73,7 @@ fn tube(estimate: &Estimate) -> Vec<String> {
     lines.extend([
         time(estimate),
         format!(
-            "steps             {} of {} t; the stiffest contact turns round in about {} t, {} steps",
+            "steps             {} of {} t; the shortest contact lasts about {} t, {} steps",
             estimate.steps,
             significant(estimate.time_step, 4),
             significant(estimate.contact_time, 3),
@@ -126,8 +128,8 @@ fn units(estimate: &Estimate) -> Vec<String> {
         let [frequency, speed] =
             [si.wave_frequency_hz, si.wave_speed_m_per_s].map(|it| significant(it, 4));
         wave = format!("; a wave of {frequency} Hz, {speed} m/s");
-        let largest = significant(si.largest_mass_flow_rate_kg_per_s, 4);
-        flow = format!("; at most {largest} kg/s");
+        let largest = significant(HOUR * si.largest_mass_flow_rate_kg_per_s, 4);
+        flow = format!("; at most {largest} kg/h");
     }
     if si.fastest_wave_frequency_hz != si.wave_frequency_hz {
         let frequency = significant(si.fastest_wave_frequency_hz, 4);
@@ -179,7 +181,7 @@ fn cost(estimate: &Estimate) -> Vec<String> {
     let why = match estimate.reference_only.is_some() || is_reference {
         true => "the reference kernel takes no more".to_owned(),
         false => format!(
-            "one for each {SPHERES_OF_A_THREAD} of {} moving spheres, at least one, on {}",
+            "{} moving spheres, {SPHERES_OF_A_THREAD} or more for each thread, on {}",
             estimate.moving_spheres,
             counted(processors(), "processor")
         ),

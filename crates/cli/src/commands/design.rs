@@ -131,7 +131,7 @@ fn in_words(design: &Design) -> String {
     }
     if design.groups.iter().any(|group| group.place() == "near") {
         lines.push(
-            "near: just outside the range, by less than two tubes that count as alike may differ; counted as inside"
+            "near: slightly outside the range, by less than two tubes may differ that count as alike; treated as inside"
                 .to_owned(),
         );
     }
@@ -155,7 +155,7 @@ fn in_words(design: &Design) -> String {
         }
         let [least, most] = expected.range;
         line += &format!(
-            "; {} published points of {least:.2} to {most:.2}, the nearest at {:.1}: {}",
+            "; {} published points between {least:.2} and {most:.2}, the nearest at a distance of {:.1} (0 is the same tube, 1 just alike): {}",
             expected.points,
             expected.distance,
             expected.studies.join(", ")

@@ -32,9 +32,9 @@ pub fn page(design: &Design, name: &str, cost: &str) -> String {
                                 {
                                     ", " (rounded(rate)) " ± " (rounded(error)) " kg/h"
                                 }
-                                " (" (flow.expectation.points) " published points of "
-                                (rounded(flow.expectation.range[0])) " to " (rounded(flow.expectation.range[1]))
-                                ", the nearest at " (rounded(flow.expectation.distance)) ": "
+                                " (" (flow.expectation.points) " published points between "
+                                (rounded(flow.expectation.range[0])) " and " (rounded(flow.expectation.range[1]))
+                                ", the nearest at a distance of " (rounded(flow.expectation.distance)) " (0 is the same tube, 1 just alike): "
                                 (flow.expectation.studies.join(", ")) ")."
                             }
                         }
@@ -59,7 +59,7 @@ pub fn page(design: &Design, name: &str, cost: &str) -> String {
                         }
                         @if design.groups.iter().any(|group| group.place() == "near") {
                             p {
-                                "near: just outside the range, by less than two tubes that count as alike may differ; counted "
+                                "near: slightly outside the range, by less than two tubes may differ that count as alike; treated "
                                 "as inside."
                             }
                         }

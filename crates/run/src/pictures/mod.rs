@@ -97,7 +97,7 @@ pub fn title(configuration: &Configuration) -> String {
             force_amplitude, ..
         } => {
             let force = value(ScheduledParameter::ForceAmplitude, force_amplitude);
-            let density = format!("*n* = {:.3} *d*^{{−3}}", configuration.number_density());
+            let density = format!("*n* = {:.3}", configuration.number_density());
             let unit = units(configuration).force();
             (format!("*f*^{{P}} = {force} {unit}"), Some(density))
         }

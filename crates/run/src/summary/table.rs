@@ -107,7 +107,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     setting("force_amplitude", "m d/t^2", "f^P; missing under strain control", Optional(|c| c.drive.own(Parameter::ForceAmplitude))).only_in_rows().labelled("force amplitude f"),
     setting("strain_rate", "1/t", "c/lambda", Real(|c| c.drive.strain_rate)).only_in_rows().labelled("strain rate ε̇"),
     setting("volume_fraction", "1", "rho = N/(6 a^2 L), grain volumes averaged", Real(Configuration::volume_fraction)).only_in_rows().labelled("volume fraction ρ"),
-    result("number_density", "1/d^3", "n = N d*^3/(pi a^2 L)", Real(|s| s.configuration.number_density())).only_in_rows().labelled("number density n"),
+    result("number_density", "1", "n = N d*^3/(pi a^2 L), d* the largest diameter", Real(|s| s.configuration.number_density())).only_in_rows().labelled("number density n"),
     setting("grains", "1", "N", Whole(|c| c.grains.number)).labelled("grains"),
     setting("radius", "d", "a, to the centres of the wall spheres", Real(|c| c.tube.radius)).only_in_rows().labelled("radius a"),
     setting("wavelength", "d", "lambda", Real(|c| c.tube.wavelength)).only_in_rows().labelled("wavelength λ"),

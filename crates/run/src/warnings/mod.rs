@@ -109,12 +109,14 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
             let closes = "the tube closes on itself: the clear opening of the bottleneck, w - d_w";
             let message = match configuration.tube.arrangement {
                 Arrangement::Smooth => format!(
-                    "{closes}, is {opening:.2}; a grain that it closes on is pressed into the wall by up to {:.2} d on \
+                    "{closes}, would be {opening:.2}; a grain that it closes on is pressed into the wall by up to {:.2} d on \
                      either side: soft grains there no longer pass for solid ones",
                     0.5 * (configuration.grains.diameter_max - opening)
                 ),
                 _ => {
-                    format!("{closes}, is {opening:.2}; grains there are squeezed through the wall")
+                    format!(
+                        "{closes}, would be {opening:.2}; grains there are squeezed through the wall"
+                    )
                 }
             };
             warnings.push(Warning { key, message });

@@ -52,9 +52,9 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
             format!("strain rates of {slower:.2e} or less in drive.schedule")
         } else {
             format!(
-                "drive.strain_rate = {slower:.2e} or less, or a {name} of {harder:.2e} {unit} or more with \
-                 units.wave_frequency = {frequency:.2e}, for without it the wave in SI becomes faster with the {name} and \
-                 the overlap stays{}",
+                "drive.strain_rate = {slower:.2e} or less; or a {name} of {harder:.2e} {unit} or more together with \
+                 units.wave_frequency = {frequency:.2e} (without it a larger {name} makes the wave faster, and the overlap \
+                 stays){}",
                 scaled_with(configuration, name, value / harder)
             )
         };
@@ -132,7 +132,7 @@ fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String
     }
     let keys = keys.join(", ");
     format!(
-        "; what is in units of the {name} ({keys}) is then multiplied by {factor:.3e} to stay what it is in SI"
+        ". Then multiply what is in units of the {name} ({keys}) by {factor:.3e}, so that it stays the same in SI"
     )
 }
 

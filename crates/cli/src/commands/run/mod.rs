@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         }
         Ending::Stopped(code) => {
             say(&format!(
-                "stopped {}; what there is is in {place}\ngo on with: peristalsis run --resume {place}",
+                "stopped {}; the results so far are in {place}\ngo on with: peristalsis run --resume {place}",
                 how_far(run, summary)
             ));
             Ok(ExitCode::from(code))

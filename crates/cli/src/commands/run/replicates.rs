@@ -234,7 +234,7 @@ fn line(seed: u64, outcome: &Outcome) -> String {
         words.push(format!("J/Jmax = {said}{within}"));
         words.push(match summary.transition_time {
             Some(time) => format!("transition at t = {time:.1}"),
-            None if is_too_short(summary) => "too short to tell of a transition".to_owned(),
+            None if is_too_short(summary) => "too short for a transition".to_owned(),
             None => "no transition".to_owned(),
         });
     }
@@ -274,7 +274,7 @@ fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
         let seed = seeds[0];
         let alike = match seeds.len() - 1 {
             0 => String::new(),
-            others => format!(" (a warning of this key with {others} more)"),
+            others => format!(" ({} more with such a warning)", counted(others, "seed")),
         };
         warning.clone().under(&format!("with seed {seed}{alike}"))
     };
@@ -381,7 +381,7 @@ fn conclude(
     }
     if let Some(code) = stop.requested() {
         let again = format!(
-            "stopped with {complete} complete; what there is is in {place}\ngo on with: peristalsis run --resume {place}"
+            "stopped with {complete} complete; the results so far are in {place}\ngo on with: peristalsis run --resume {place}"
         );
         say(&again);
         return Ok(ExitCode::from(code));

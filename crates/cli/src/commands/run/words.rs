@@ -57,7 +57,7 @@ fn transition(run: &Run, summary: &Summary) -> String {
     match summary.transition_time {
         // The mean of a period is the first that there is.
         Some(time) if time * configuration.drive.strain_rate < 1.0 => format!(
-            "transition in the first period, at t = {time:.1} if the flow changes evenly: J/Jmax crosses {threshold}"
+            "transition in the first period, interpolated to t = {time:.1}: J/Jmax crosses {threshold}"
         ),
         Some(time) => format!(
             "transition at t = {time:.1} ({} periods): J/Jmax crosses {threshold}",
@@ -65,7 +65,7 @@ fn transition(run: &Run, summary: &Summary) -> String {
         ),
         None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
         None if is_too_short(summary) => format!(
-            "too short to tell of a transition: {} periods, and {CONFIRMATION_PERIODS} whole ones in a row confirm it",
+            "too short for a transition: {} periods, and it takes {CONFIRMATION_PERIODS} whole ones to be sure",
             periods(summary.time)
         ),
         None if !has_three_averages(run) => format!(
@@ -102,10 +102,14 @@ fn flow(run: &Run, summary: &Summary) -> String {
             format!("J/Jmax = {said}, mean of its last {late} % (too short for an error)")
         }
         None if summary.flow_rate().is_nan() => "no sample was taken".to_owned(),
-        None => format!(
-            "J = {}, mean of its last {late} %; no J/Jmax without grains inside and a moving wave",
-            significant(summary.flow_rate() + 0.0, 4)
-        ),
+        None => {
+            let flow = significant(summary.flow_rate() + 0.0, 4);
+            let why = match configuration.drive.period() {
+                None => "the wave stands",
+                Some(_) => "no grain was inside",
+            };
+            format!("J = {flow} t^-1, mean of its last {late} %; {why}, so J/Jmax is not defined")
+        }
     };
     if let Some((newtonian, clear_bore)) = summary.newtonian {
         // The load of a fluid counts against its viscosity, which grains do not have.
@@ -160,7 +164,12 @@ fn in_si(run: &Run, summary: &Summary) -> String {
     }
     let torque = summary.wall_torque.map(|(torque, _)| torque);
     let torque = torque.and_then(|torque| summary.in_si(torque, Units::energy));
-    let torque = torque.map(|it| format!(" (torque {} N m at a wave a turn)", number(it)));
+    let torque = torque.map(|it| {
+        format!(
+            " (torque {} N m of a shaft that turns once for each wave)",
+            number(it)
+        )
+    });
     let mut text = format!(
         "\nin SI: {} kg/h{}, wall power {} W{}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
         measured((HOUR * mass_flow, HOUR * error)),
@@ -191,7 +200,12 @@ fn wear(summary: &Summary) -> String {
     let power = told(summary, wear.power, Units::power, ["W", "m d^2/t^3"]);
     let unit = |units: &Units| units.pressure() * units.velocity();
     let per_area = told(summary, wear.power_per_area, unit, ["W/m^2", "m/t^3"]);
-    format!("\nwear: sliding on the wall takes {power}, {per_area} of wall")
+    let (power_lost, error) = wear.power;
+    let doubt = match known_error(power_lost, error) {
+        Some(_) => "",
+        None => " (too short for an error)",
+    };
+    format!("\nwear: sliding on the wall takes {power}, {per_area} of wall{doubt}")
 }
 
 /// What tells a discharge from a mass flow.

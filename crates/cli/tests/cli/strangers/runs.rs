@@ -487,7 +487,7 @@ fn the_error_says_what_it_is_an_error_of_and_rounding_is_none() {
         .shows(&["within this run, mean of its last 25 %"]);
     let short = place.does("run SMALL --out short run.periods=0.05").stdout;
     assert!(
-        short.contains("too short to tell of a transition: 0.050 periods"),
+        short.contains("too short for a transition: 0.050 periods"),
         "{short}"
     );
 }
