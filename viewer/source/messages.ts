@@ -261,7 +261,7 @@ export type Study = {
   counts: { [key in string]: number },
   /** Whether there may be more rows later. */
   growing: boolean,
-  /** The folder of its runs; null for a table alone. */
+  /** The folder of its runs, as a word of a shell; null for a table alone. */
   store: string | null,
 };
 

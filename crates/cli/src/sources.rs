@@ -21,7 +21,10 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
     }
     if let Some(key) = arguments.overrides.iter().find(|it| !it.contains('=')) {
         let reason = format!("--set {key} has no `=`");
-        return Err(Failure::usage(reason, format!("write --set {key}=VALUE")));
+        return Err(Failure::usage(
+            reason,
+            format!("write key=value: --set {key}=VALUE"),
+        ));
     }
     let file = name_and_text(arguments)?;
     if let Some((name, text)) = &file

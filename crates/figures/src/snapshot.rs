@@ -1,7 +1,7 @@
 //! Grains in a part of the tube, seen from the side.
 
 use crate::axis::extent;
-use crate::chart::{ChartFigure, ChartPanel, Line, Spheres, Tint};
+use crate::chart::{Band, ChartFigure, ChartPanel, Line, Reference, Spheres, Tint};
 use crate::colour_scale::{ColourScale, Palette};
 use crate::drawing::Drawing;
 use crate::error::{FigureError, finite, positive};
@@ -35,12 +35,14 @@ pub struct SnapshotGrain {
 pub enum SnapshotWall<'a> {
     /// The wall spheres within three quarters of a diameter of the plane through the tube's axis, as faint discs.
     Spheres(&'a [SnapshotSphere]),
-    /// The radius of the wall at places along the tube, as two curves.
+    /// The radius of the wall at places along the tube as two curves, and its spheres inside of it as a band.
     Outline {
         /// Places along the tube.
         along: &'a [f64],
-        /// Radius at each.
+        /// Radius at each, to the centres of the wall spheres.
         radius: &'a [f64],
+        /// Half a wall sphere: how far the wall reaches inside of its radius.
+        thickness: f64,
     },
 }
 
@@ -58,8 +60,8 @@ pub struct Snapshot<'a> {
     pub length: f64,
     /// Length of the tube.
     pub tube: f64,
-    /// Whether the tube is periodic: spheres also show where their images lie in the part.
-    pub is_periodic: bool,
+    /// Place of the outlet of an open tube. A periodic tube has none, and spheres also show where their images lie in the part.
+    pub outlet: Option<f64>,
     /// Wavelength, so that a part can say how many of the tube's waves it shows.
     pub wavelength: f64,
 }
@@ -243,9 +245,9 @@ impl<'a> Part<'a> {
     /// Adds what shows between two places along the tube.
     fn add_to(&self, panel: ChartPanel, (from, to): (f64, f64)) -> ChartPanel {
         let to = to.min(self.snapshot.length);
-        let shifts = match self.snapshot.is_periodic {
-            true => &[0.0, -self.snapshot.tube, self.snapshot.tube][..],
-            false => &[0.0],
+        let shifts = match self.snapshot.outlet {
+            None => &[0.0, -self.snapshot.tube, self.snapshot.tube][..],
+            Some(_) => &[0.0],
         };
         // Places of a sphere and of its periodic images.
         let places = |sphere: &SnapshotSphere| {
@@ -263,14 +265,31 @@ impl<'a> Part<'a> {
                 grains.values.push(grain.axial_velocity);
             }
         }
-        let mut panel = panel.with(wall).with(grains);
-        if let SnapshotWall::Outline { along, radius } = self.snapshot.wall {
+        let mut panel = panel;
+        if let SnapshotWall::Outline {
+            along,
+            radius,
+            thickness,
+        } = self.snapshot.wall
+        {
             for side in [1.0, -1.0] {
-                let edge: Vec<f64> = radius.iter().map(|radius| side * radius).collect();
-                panel = panel.with(Line::new("", along, &edge).tint(Tint::Grey));
+                let at = |inside: f64| -> Vec<f64> {
+                    let edge = radius.iter().map(|radius| (radius - inside).max(0.0));
+                    edge.map(|radius| side * radius).collect()
+                };
+                let (centres, surface) = (at(0.0), at(thickness));
+                let (low, high) = match side > 0.0 {
+                    true => (&surface, &centres),
+                    false => (&centres, &surface),
+                };
+                panel = panel
+                    .with(Band::new("", along, low, high).tint(Tint::Grey))
+                    .with(Line::new("", along, &centres).tint(Tint::Grey));
             }
         }
-        panel
+        let outlet = self.snapshot.outlet.filter(|it| (from..=to).contains(it));
+        let outlet = outlet.map(|place| Reference::vertical(place).label("outlet"));
+        panel.with(wall).with(grains).with_all(outlet)
     }
 }
 
@@ -324,7 +343,7 @@ mod tests {
             wall,
             length: 8.0,
             tube: 8.0,
-            is_periodic: true,
+            outlet: None,
             wavelength: 8.0,
         }
     }
@@ -381,11 +400,8 @@ mod tests {
         let grains = [grain(0.1, 0.0, 0.0)];
         let periodic = snapshot(&grains, NO_WALL);
         assert_eq!(spheres(&[periodic]).len(), 2);
-        let is_periodic = false;
-        let open = Snapshot {
-            is_periodic,
-            ..periodic
-        };
+        let outlet = Some(0.75 * periodic.tube);
+        let open = Snapshot { outlet, ..periodic };
         assert_eq!(spheres(&[open]).len(), 1);
     }
 

@@ -70,7 +70,7 @@ def test_a_wall_without_spheres_is_drawn() -> None:
         (
             "frictional",
             {"static_friction": 0.4},
-            r"$f^{\mathrm{P}}$ = 0.004 $Yd^{\mathrm{2}}$,  $\dot{ε}$ = 0.00401 $t^{\mathrm{{*}{−}1}}$,  $n$ = 0.710 $d^{\mathrm{{−}3}}$,  $N$ = 1093,  "
+            r"$f^{\mathrm{P}}$ = 0.004 $Yd^{\mathrm{2}}$,  $\dot{ε}$ = 0.00401 $t^{\mathrm{{*}{−}1}}$,  $n$ = 0.710,  $N$ = 1093,  "
             r"start: jammed,  $μ_{\mathrm{s}}$ = 0.4",
         ),
         (

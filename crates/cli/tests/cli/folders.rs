@@ -47,14 +47,12 @@ fn nested_relative_folders_are_made_and_filled() {
         "the same, clear bore, φ = b/(a − dw/2)",
     ];
     assert_labels(&place.path("a/b/c/flow.svg"), &flow);
-    let position = "position in the wave frame, (z − ct)/λ";
     let profile = [
         "radius, r/d",
         "grains per length, n1 d",
         "axial velocity, vz/c",
         "temperature, Tg/mc2",
         "(d)",
-        position,
     ];
     assert_labels(&place.path("a/b/c/profile.svg"), &profile);
 }

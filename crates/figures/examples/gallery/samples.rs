@@ -346,7 +346,7 @@ fn snapshot(length: f64, width: Width) -> Drawn {
             wall: SnapshotWall::Spheres(&wall),
             length,
             tube: length,
-            is_periodic: true,
+            outlet: None,
             wavelength: 10.0,
         }],
         axis: "*z*/*d*",
@@ -371,10 +371,11 @@ fn snapshots() -> Drawn {
         wall: SnapshotWall::Outline {
             along: &along,
             radius: &radius,
+            thickness: 0.5,
         },
         length: 20.0,
         tube: 100.0,
-        is_periodic: true,
+        outlet: None,
         wavelength: 10.0,
     };
     SnapshotFigure {

@@ -75,7 +75,8 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     from_axis = np.hypot(grains[:, 0], grains[:, 1])
     radii = simulation.wall_radius()
     # An open tube has no images beyond its ends.
-    repeats = np.inf if simulation.configuration["tube"].get("ends") == "open" else length
+    is_open = simulation.configuration["tube"].get("ends") == "open"
+    repeats = np.inf if is_open else length
     escaped = from_axis > simulation.wall_radius(grains[:, 2]) + 0.5 * diameters
     reach = 1.06 * (radii.max() + (0.0 if is_prescribed(simulation) else 0.5))
     shown = from_axis < _REACH * radii.mean()
@@ -90,7 +91,10 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
         if is_prescribed(simulation):
             place = np.linspace(begin, end, 400)
             outline = simulation.wall_radius(along(place))
+            # The surface of the wall lies half a wall sphere inside of its radius.
+            surface = np.maximum(outline - 0.5 * simulation.configuration["wall.sphere_diameter"], 0.0)
             for side in (1.0, -1.0):
+                new.fill_between(place, side * surface, side * outline, color=GREY, alpha=0.22, linewidth=0.0)
                 new.plot(place, side * outline, color=GREY, linewidth=1.0)
         else:
             # Half a diameter would leave gaps where the wall is stretched.
@@ -99,6 +103,9 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
         order = np.flatnonzero(shown)
         order = order[np.argsort(grains[order, 0])]
         _spheres(new, along(grains[order, 2]), grains[order, 1], diameters[order], velocity[order], escaped[order], repeats)
+        if is_open and begin <= simulation.length <= end:
+            new.axvline(simulation.length, color="black", linestyle=":", linewidth=1.0)
+            new.annotate("outlet", (simulation.length, reach), (-2, -3), textcoords="offset points", rotation=90, ha="right", va="top")
         part = "" if end - begin >= length * (1 - 1e-9) else f"  ({min(waves, all_waves - first)} of {all_waves} waves shown)"
         name = "$z/d$" if heading > 0 else "$(L - z)/d$"
         new.set(xlabel=name + part, ylabel="$y/d$", aspect="equal", xlim=(begin, end), ylim=(-reach, reach))

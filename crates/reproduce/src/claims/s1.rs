@@ -199,7 +199,7 @@ fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure> {
                 wall: SnapshotWall::Spheres(wall),
                 length,
                 tube: length,
-                is_periodic: true,
+                outlet: None,
                 wavelength,
             }
         })

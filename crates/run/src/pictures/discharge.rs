@@ -36,7 +36,7 @@ pub(super) fn discharge(
             .y_range(0.0..)
             .with(Line::new("", &time, &discharged).tint(Tint::Blue))
             .with(late_rate.pattern(Pattern::Dashed)),
-        panel("in the tube, *M*/*m*").with(Line::new("", &time, &hold_up).tint(Tint::Green)),
+        panel("hold-up, *H*/*m*").with(Line::new("", &time, &hold_up).tint(Tint::Green)),
     ];
     ChartFigure::grid(1, panels)
         .title(&title(run.configuration()))

@@ -1,7 +1,7 @@
 //! Flow and wall along the wave at rest.
 
 use peristalsis_figures::chart::{Band, ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Tint};
-use peristalsis_figures::{Drawing, FigureError, Quantity};
+use peristalsis_figures::{Drawing, FigureError, Quantity, Width};
 use peristalsis_observe::ProfileBin;
 
 use super::{HEIGHT, guide, label, title};
@@ -52,7 +52,7 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
         with_curve(panel(label), tint, &bins, of)
     };
     let mut panels = vec![
-        tube(&bins),
+        tube(&bins, 0.5 * run.simulation().wall().sphere_diameter()),
         curve("grains per length, *n*_{1} *d*", Tint::Blue, |bin| {
             bin.density
         })
@@ -66,11 +66,12 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
         panels.push(curve(&pressure, Tint::Orange, |bin| bin.wall_pressure).y_range(0.0..));
         panels.push(curve(&shear, Tint::Green, |bin| bin.wall_shear).with(guide(0.0)));
     }
-    ChartFigure::grid(1, panels)
+    ChartFigure::grid(2, panels)
         .title(&title(configuration))
         .description(
             "Tube, density, velocity, temperature and stress on the wall in the wave frame.",
         )
+        .width(Width::DoubleColumn)
         .panel_height(PANEL_HEIGHT)
         .share_x()
         .draw()
@@ -102,8 +103,9 @@ fn with_curve(
         .with(Line::new("", &x, &bound(0.0)).tint(tint))
 }
 
-/// The tube in section: its bore white between two lines of wall, all outside of it grey.
-fn tube(bins: &[ProfileBin]) -> ChartPanel {
+/// The tube in section: its clear bore white, the wall spheres grey from a thickness inside of their centres on, which lie on
+/// two lines.
+fn tube(bins: &[ProfileBin], thickness: f64) -> ChartPanel {
     let x = column(bins, |bin| bin.position);
     let end = REACH * bins.iter().map(|bin| bin.radius).fold(0.0, f64::max);
     let mut panel = panel("radius, *r*/*d*")
@@ -111,9 +113,10 @@ fn tube(bins: &[ProfileBin]) -> ChartPanel {
         .with(guide(0.0));
     for side in [1.0, -1.0] {
         let wall = column(bins, |bin| side * bin.radius);
+        let surface = column(bins, |bin| side * (bin.radius - thickness).max(0.0));
         let outside = vec![side * end; x.len()];
         panel = panel
-            .with(Band::new("", &x, &wall, &outside).tint(Tint::Grey))
+            .with(Band::new("", &x, &surface, &outside).tint(Tint::Grey))
             .with(Line::new("", &x, &wall).tint(Tint::Black));
     }
     panel

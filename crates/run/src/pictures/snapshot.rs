@@ -105,11 +105,14 @@ struct SideView {
     grains: Vec<SnapshotGrain>,
     /// Where the wall is, place by place.
     outline: (Vec<f64>, Vec<f64>),
+    /// Half a sphere of a prescribed wall.
+    thickness: f64,
     /// The spheres of an elastic wall.
     spheres: Vec<SnapshotSphere>,
     length: f64,
     tube: f64,
-    is_periodic: bool,
+    /// Of an open tube.
+    outlet: Option<f64>,
     wavelength: f64,
 }
 
@@ -122,13 +125,14 @@ impl SideView {
                 SnapshotWall::Outline {
                     along: &self.outline.0,
                     radius: &self.outline.1,
+                    thickness: self.thickness,
                 }
             } else {
                 SnapshotWall::Spheres(&self.spheres)
             },
             length: self.length,
             tube: self.tube,
-            is_periodic: self.is_periodic,
+            outlet: self.outlet,
             wavelength: self.wavelength,
         }
     }
@@ -178,10 +182,11 @@ impl SideView {
         Self {
             grains,
             outline,
+            thickness: 0.5 * simulation.wall().sphere_diameter(),
             spheres,
             length,
             tube,
-            is_periodic: configuration.tube.ends.is_periodic(),
+            outlet: simulation.ends().map(|ends| ends.length(simulation.wall())),
             wavelength: configuration.tube.wavelength,
         }
     }

@@ -200,7 +200,7 @@ mod tests {
         let softer: f64 = number_after(&said, "overlaps stay small: ")
             .parse()
             .unwrap();
-        let factor: f64 = number_after(&said, "multiplied by ").parse().unwrap();
+        let factor: f64 = number_after(&said, "wall.keep) by ").parse().unwrap();
         assert!((factor * softer / 6e10 - 1.0).abs() < 1e-3, "{said}");
         assert!(said.contains("drive.force_amplitude"), "{said}");
     }

@@ -205,7 +205,7 @@ fn messages_say_one_thing_once_and_in_few_digits() {
     refused(many, &["100000000 grains do not fit"]);
     let still = "run --preset frictionless drive.strain_rate=0 grains.number=0 run.duration=10";
     let still = place.does(still).stdout;
-    assert!(still.contains("J = 0.000,"), "{still}");
+    assert!(still.contains("J = 0.000 t^-1,"), "{still}");
     place.does("--help").shows(&["the time of --for is up"]);
     place.write("wrong.toml", "preset = \"frictionless\"\ndrive.widht = 3\n");
     let wrong = refused("check wrong.toml", &["wrong.toml:2:7"]);
