@@ -66,7 +66,7 @@ pub(crate) enum Failure {
     OtherRows { message: String },
     /// The viewer.
     #[error(transparent)]
-    Viewer(#[from] ViewerError),
+    Viewer(ViewerError),
     /// Signals cannot be watched.
     #[error("cannot watch for signals: {0}")]
     Signals(std::io::Error),
@@ -88,6 +88,15 @@ impl From<ReproduceError> for Failure {
             // A study says the same whoever asked for it.
             ReproduceError::Study(error) => Self::Study(error),
             other => Self::Claim(other),
+        }
+    }
+}
+
+impl From<ViewerError> for Failure {
+    fn from(error: ViewerError) -> Self {
+        match error {
+            ViewerError::Study(error) => Self::Study(error),
+            other => Self::Viewer(other),
         }
     }
 }

@@ -24,6 +24,18 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// All of them, in the order in which they are counted.
+    pub const ALL: [Self; 4] = [Self::Reproduced, Self::Differs, Self::Answered, Self::Open];
+
+    /// The verdict on a claim that holds or not; open where that is not known.
+    pub(crate) fn of(holds: Option<bool>) -> Self {
+        match holds {
+            Some(true) => Self::Reproduced,
+            Some(false) => Self::Differs,
+            None => Self::Open,
+        }
+    }
+
     /// The verdict on a question of which enough is known, or not.
     pub(crate) fn answered_if(is_known: bool) -> Self {
         if is_known { Self::Answered } else { Self::Open }

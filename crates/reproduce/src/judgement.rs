@@ -125,11 +125,7 @@ impl Judgement {
         let statistics = best(parts.iter().map(|part| part.statistics), needed);
         let on_wall = |part: Part| {
             let is_enough = part.statistics.suffice(needed);
-            let verdict = match part.holds.filter(|_| is_enough) {
-                Some(true) => Verdict::Reproduced,
-                Some(false) => Verdict::Differs,
-                None => Verdict::Open,
-            };
+            let verdict = Verdict::of(part.holds.filter(|_| is_enough));
             let why = match is_enough {
                 true => part.why,
                 false => format!("too few runs or widths for a verdict; {}", part.why),

@@ -253,7 +253,7 @@ fn placeholders(text: &str) -> Vec<(usize, usize, &str)> {
 }
 
 /// A text with its placeholders filled; a missing or superfluous value is a bug of ours.
-fn filled(text: &str, values: &Values<'_>) -> String {
+pub(crate) fn filled(text: &str, values: &Values<'_>) -> String {
     let found = placeholders(text);
     for (name, _) in values {
         debug_assert!(

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use peristalsis_configuration::document::Node;
 use peristalsis_configuration::{
-    Configuration, ConfigurationError, InitialState, Problem, ProblemKind, Problems, word,
+    Configuration, ConfigurationError, InitialState, Problem, ProblemKind, word,
 };
 use peristalsis_run::Stopping;
 
@@ -179,7 +179,6 @@ impl Plan {
 
     /// No two points are the same run.
     pub(crate) fn check_distinct(&self) -> Result<(), ConfigurationError> {
-        let mut problems = Problems::default();
         let mut seen: HashMap<Identity, usize> = HashMap::new();
         for (place, point) in self.points.iter().enumerate() {
             let start = point.configuration.at_its_start();
@@ -192,11 +191,10 @@ impl Plan {
                 )
                 .key("axes")
                 .help("an axis names a value once, and a key that changes something: not an amplitude that drive.schedule leads from t = 0 on, nor a run.time_step that becomes the same one, for a sample has a whole number of steps");
-                problems.push(problem);
-                break;
+                return Err(problem.into());
             }
         }
-        problems.check()
+        Ok(())
     }
 
     /// The points; refinement's come after the others.

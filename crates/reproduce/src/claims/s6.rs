@@ -228,11 +228,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .iter()
         .map(|one| (rounded(one.bottleneck), one.differs()));
     let places = Rates::of(places);
-    let verdict = match places.hold() {
-        Some(true) => Verdict::Reproduced,
-        Some(false) => Verdict::Differs,
-        None => Verdict::Open,
-    };
+    let verdict = Verdict::of(places.hold());
     let count = places.count();
     let summary = PROSE.text("summary", values!(count));
     let mut draft = Draft::of(PROSE);

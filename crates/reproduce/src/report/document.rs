@@ -5,6 +5,7 @@ use peristalsis_analysis::number::plain;
 use crate::Examination;
 use crate::contents::{Quantity, ReportTable};
 use crate::finding::{Finding, Statistics, Verdict};
+use crate::prose::{filled, values};
 use crate::report::files::figure_files;
 use crate::report::markdown::table;
 use crate::report::markup::markdown;
@@ -26,20 +27,18 @@ pub(crate) fn text(report: &Report, figures: &str) -> String {
         let found = examinations.filter(|one| one.finding.verdict == verdict);
         format!("{}: {}", verdict.name(), found.count())
     };
-    let verdicts = [
-        Verdict::Reproduced,
-        Verdict::Differs,
-        Verdict::Answered,
-        Verdict::Open,
-    ];
     let quick = report.size.choose(" --quick", "");
     let command = format!("peristalsis reproduce{quick}{}", page::only(report));
-    let mut text = OPENING
-        .replace("{command}", &command)
-        .replace("{count}", &verdicts.map(count).join(", "))
-        .replace("{strain_rates}", &needed.strain_rates.to_string())
-        .replace("{widths}", &needed.widths.to_string())
-        .replace("{replicates}", &needed.replicates.to_string());
+    let mut text = filled(
+        OPENING,
+        values!(
+            command,
+            count = Verdict::ALL.map(count).join(", "),
+            strain_rates = needed.strain_rates,
+            widths = needed.widths,
+            replicates = needed.replicates
+        ),
+    );
     text.push_str(&format!("\n{}", table(&overview(report))));
     let files = figure_files(&report.examinations);
     for (examination, places) in report.examinations.iter().zip(&files.places) {

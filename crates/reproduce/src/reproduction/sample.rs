@@ -37,6 +37,16 @@ pub enum Extent {
     Time(Duration),
 }
 
+impl Extent {
+    /// The time, of a sample that has one.
+    fn time(self) -> Option<Duration> {
+        match self {
+            Self::Part(_) => None,
+            Self::Time(time) => Some(time),
+        }
+    }
+}
+
 /// A random sample of the published rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
@@ -218,10 +228,7 @@ impl<'a> Shared<'a> {
     /// The next run of the study from which fewest were drawn, of these the shortest. A study whose next run takes longer
     /// than there is time is done with: to pass over it would favour short runs.
     fn draw(&self) -> Option<(usize, Card)> {
-        let left = match self.sample.extent {
-            Extent::Part(_) => None,
-            Extent::Time(_) => self.left(),
-        };
+        let left = self.sample.extent.time().and_then(|_| self.left());
         let mut desk = self.desk();
         let pace = (WEIGHT_OF_GUESS + desk.took) / (WEIGHT_OF_GUESS + desk.expected);
         loop {
@@ -376,11 +383,10 @@ impl Reproduction {
             Extent::Time(_) => 0,
         };
         let begin = Instant::now();
-        let time = match sample.extent {
-            Extent::Part(_) => None,
-            Extent::Time(time) => Some(time),
-        };
-        let deadline = [time, effort.limit].into_iter().flatten().min();
+        let deadline = [sample.extent.time(), effort.limit]
+            .into_iter()
+            .flatten()
+            .min();
         let shared = Shared {
             desk: Mutex::new(Desk {
                 decks,

@@ -310,9 +310,7 @@ impl Specification {
         if let Some(entry) = document::entry(table, "axes") {
             problem = problem.at(&entry.key, "these axes");
         }
-        let mut problems = Problems::default();
-        problems.push(problem);
-        Ok(problems.check()?)
+        Err(ConfigurationError::from(problem).into())
     }
 }
 
@@ -337,9 +335,7 @@ fn unreadable(table: &Table, error: &StudyError) -> ConfigurationError {
     if let Some(entry) = document::entry(table, "file") {
         problem = problem.at(&entry.item.origin, "this file");
     }
-    let mut problems = Problems::default();
-    problems.push(problem);
-    problems.check().expect_err("a problem")
+    problem.into()
 }
 
 /// Checks the keys of a study beyond the schema.

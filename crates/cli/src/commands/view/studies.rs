@@ -6,7 +6,7 @@ use peristalsis_formats::read_table;
 use peristalsis_reproduce::{STORES, Size, StudyFile};
 use peristalsis_run::files::CONFIGURATION;
 use peristalsis_study::{STUDY, StudyError};
-use peristalsis_viewer::{Figure, Study, ViewerError};
+use peristalsis_viewer::{Figure, Study};
 
 use crate::commands::say;
 use crate::failure::Failure;
@@ -34,7 +34,7 @@ impl Studies {
             return Ok(None);
         }
         if source.join(STUDY).is_file() {
-            let study = Study::of_store(source).map_err(failure)?;
+            let study = Study::of_store(source)?;
             found.studies.push(study);
             return Ok(Some(found));
         }
@@ -42,7 +42,7 @@ impl Studies {
         let stores = inside(&source.join(STORES), |path| path.join(STUDY).is_file());
         reading(stores.len(), source);
         for store in stores {
-            found.add(&store, Study::of_store(&store).map_err(failure));
+            found.add(&store, Study::of_store(&store).map_err(Failure::from));
         }
         if found.is_empty() {
             let mut tables = inside(source, |path| is_table(path) && path.is_file());
@@ -76,14 +76,6 @@ fn reading(studies: usize, source: &Path) {
             "reading {studies} studies in {}",
             source.display()
         ));
-    }
-}
-
-/// A fault of a study in the words of every command about it.
-fn failure(error: ViewerError) -> Failure {
-    match error {
-        ViewerError::Study(error) => Failure::Study(error),
-        other => Failure::Viewer(other),
     }
 }
 
@@ -125,7 +117,7 @@ fn of_table(path: &Path) -> Result<Study, Failure> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = table.metadata().get("peristalsis.study");
     let of_table =
-        |design: Option<&_>| Study::of_table(&stem, table.clone(), design).map_err(failure);
+        |design: Option<&_>| Study::of_table(&stem, table.clone(), design).map_err(Failure::from);
     let mut best = of_table(None)?;
     if let Some(file) = StudyFile::named(name.map_or(&stem, |name| name.as_str())) {
         for size in [Size::Full, Size::Quick] {

@@ -8,6 +8,7 @@ mod studies;
 use crate::{CLAIMS, Examination, Size, Statistics, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
+use crate::prose::{filled, values};
 use crate::report::Report;
 use crate::report::markup::rich;
 use parts::{anchor, verdict_badge};
@@ -206,15 +207,17 @@ fn overview(report: &Report) -> Markup {
 fn reading(report: &Report) -> Markup {
     let needed = Statistics::FOR_A_VERDICT;
     let lines = include_str!("reading.html").lines().map(str::trim_start);
-    PreEscaped(
-        lines
-            .collect::<String>()
-            .replace("{quick}", report.size.choose(" --quick", ""))
-            .replace("{only}", &only(report))
-            .replace("{strain_rates}", &needed.strain_rates.to_string())
-            .replace("{widths}", &needed.widths.to_string())
-            .replace("{replicates}", &needed.replicates.to_string()),
-    )
+    let (quick, only) = (report.size.choose(" --quick", ""), only(report));
+    PreEscaped(filled(
+        &lines.collect::<String>(),
+        values!(
+            quick,
+            only,
+            strain_rates = needed.strain_rates,
+            widths = needed.widths,
+            replicates = needed.replicates
+        ),
+    ))
 }
 
 /// The option that asks for the claims of this page alone, if they are not all.
