@@ -1,11 +1,17 @@
-// Where the page says that a flow jams and lets go, from courses made by hand; called by check.mjs.
+// Functions of the page by themselves: where it says that a flow jams and lets go, from courses made by hand, and how it writes
+// numbers; called by check.mjs.
 import assert from "node:assert/strict";
 import { build } from "esbuild";
 
+/** A module of the page. */
+async function part(name) {
+  const { outputFiles } = await build({ entryPoints: [`source/${name}.ts`], bundle: true, format: "esm", write: false });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+}
+
 /** Of a tube whose width is driven; its page's own function. */
 async function load() {
-  const { outputFiles } = await build({ entryPoints: ["source/thresholds.ts"], bundle: true, format: "esm", write: false });
-  const { thresholds } = await import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString("base64")}`);
+  const { thresholds } = await part("thresholds");
   return (rows) => thresholds(rows, { of: (row) => row.width, small: 0.012, opens: 1, range: [1.6, 3] });
 }
 
@@ -28,6 +34,22 @@ const jammed = () => 1;
 const jamsAt = (threshold) => (width) => (width < threshold ? 1 : 0);
 
 export const thresholdChecks = {
+  // The rows of the tests of `number.rs`: one rule for page and program.
+  async numbersWithErrors() {
+    const { withError } = await part("words");
+    const written = [
+      [1234, 56, "1230 ± 60"],
+      [1234, 156, "1230 ± 160"],
+      [-0.01, 0.3, "0.0 ± 0.3"],
+      [0.9, 0.012, "0.900 ± 0.012"],
+      [-2.5, 0.04, "−2.50 ± 0.04"],
+      [3.2e-6, 4e-7, "(3.2 ± 0.4)·10⁻⁶"],
+      [1, Infinity, "1"],
+      [-0.012, 1.7e-18, "−0.012"],
+    ];
+    for (const [value, error, text] of written) assert.equal(withError(value, error).replaceAll("\u00a0", " "), text);
+  },
+
   async thresholds() {
     const found = await load();
     // What is typed jumps: nobody knows where between, until it has been walked over.

@@ -126,7 +126,7 @@ class StudyPage {
     const none = this.choice.x ? "No finished run has such a value." : "Nothing can go across: the finished runs differ in no number. study export writes them as a table.";
     element("empty").textContent = results.rows > 0
       ? none
-      : `No run of this study has ended yet. This computes them: peristalsis study run ${store}/study.toml --store ${store}`;
+      : "No run of this study has ended yet." + (store ? ` This computes them: peristalsis study run ${store}/study.toml --store ${store}` : "");
   }
 
   private showChoices(): void {

@@ -3,19 +3,20 @@ import { powerOfTen, written } from "./charts";
 
 /** A value with its error, both to the error's first digit, or to its second if the first is a 1. */
 export function withError(value: number, error: number): string {
-  if (!(error > 0)) return written(value, 4);
+  if (!Number.isFinite(error) || error <= 1e-12 * Math.abs(value)) return written(value, 4);
   const first = Math.floor(Math.log10(error));
   // The power of ten of its last digit; 1.95 is rounded to 2.
   const last = error < 1.95 * 10 ** first ? first - 1 : first;
   const size = Math.max(Math.abs(value), error);
-  if (size >= 1e6 || size < 1e-3) {
-    const power = Math.floor(Math.log10(size));
-    const scale = 10 ** power;
-    const decimals = Math.min(8, Math.max(0, power - last));
-    return `(${(value / scale).toFixed(decimals)}\u00a0±\u00a0${(error / scale).toFixed(decimals)})·${powerOfTen(power)}`.replace("-", "−");
-  }
-  const decimals = Math.min(10, Math.max(0, -last));
-  return `${value.toFixed(decimals)}\u00a0±\u00a0${error.toFixed(decimals)}`.replace("-", "−");
+  const power = size >= 1e6 || size < 1e-3 ? Math.floor(Math.log10(size)) : 0;
+  const place = last - power;
+  const digits = (number: number) => {
+    const unit = 10 ** Math.max(0, place);
+    const text = (unit * Math.round(number / 10 ** power / unit || 0) || 0);
+    return place > 0 ? String(text) : (number / 10 ** power).toFixed(-place).replace(/^-(0\.?0*)$/, "$1");
+  };
+  const pair = `${digits(value)}\u00a0±\u00a0${digits(error)}`;
+  return (power ? `(${pair})·${powerOfTen(power)}` : pair).replaceAll("-", "−");
 }
 
 /** The value of a point, which is a lower limit where runs ended without a transition. */

@@ -272,6 +272,15 @@ mod tests {
     }
 
     #[test]
+    fn a_number_between_two_bounds_never_leaves_them() {
+        let near_one = Uncertain::bracketed(1.1, 1.0, 2.0);
+        assert!((near_one.error - 12_f64.sqrt().recip()).abs() < 1e-15);
+        assert_eq!(near_one.interval_95, Interval::new(1.0, 2.0));
+        assert_eq!(near_one.interval_68.lower, 1.0);
+        assert_eq!(near_one.interval_68.upper, 1.1 + near_one.error);
+    }
+
+    #[test]
     fn differences_have_the_sides_of_both() {
         let more = Uncertain::normal(3.0, 0.3) - Uncertain::normal(1.0, 0.4);
         let same = Uncertain::normal(2.0, 0.5);

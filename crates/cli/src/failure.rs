@@ -273,6 +273,10 @@ fn of_run(error: &RunError) -> Advice {
             "ask for at least as much with --periods or --duration, or begin anew in another folder: peristalsis run \
              DIR/config.toml --set run.periods=N --out OTHER",
         ),
+        RunError::Complete { folder } if folder.is_file() => wrong(format!(
+            "let it go on: peristalsis run --resume {} --periods N (or --duration T), N beyond its end",
+            shell_word(folder)
+        )),
         RunError::Complete { folder } => wrong(format!(
             "let it go on: peristalsis run --resume {0} --periods N (or --duration T), N beyond its end; draw its figures \
              again: peristalsis figures {0}",

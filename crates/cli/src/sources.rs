@@ -7,7 +7,7 @@ use peristalsis_configuration::{Configuration, SourceFile, Sources, preset, pres
 use peristalsis_engine::EngineError;
 use peristalsis_formats::{checkpoint, shell_word};
 use peristalsis_reproduce::design::is_design;
-use peristalsis_run::RunError;
+use peristalsis_run::{RunError, files};
 use peristalsis_study::{STUDY, Specification};
 
 use crate::arguments::ConfigurationArguments;
@@ -18,13 +18,6 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
     if arguments.file.is_none() && arguments.preset.is_none() && arguments.overrides.is_empty() {
         let reason = "no configuration: give a FILE or a --preset";
         return Err(Failure::usage(reason, known_presets()));
-    }
-    if let Some(key) = arguments.overrides.iter().find(|it| !it.contains('=')) {
-        let reason = format!("--set {key} has no `=`");
-        return Err(Failure::usage(
-            reason,
-            format!("write key=value: --set {key}=VALUE"),
-        ));
     }
     let file = name_and_text(arguments)?;
     if let Some((name, text)) = &file
@@ -65,8 +58,8 @@ pub(crate) fn name_and_text(
         return Ok(None);
     };
     let text = text_of(path).map_err(|error| match is_saved_state(path) {
-        true => not_a_saved_state(path),
-        false => no_file(path, error),
+        true => is_no_configuration(path),
+        false => no_file(path, error, &arguments.overrides),
     })?;
     let name = match is_standard_input(path) {
         true => "standard input".to_owned(),
@@ -80,24 +73,38 @@ fn is_saved_state(path: &Path) -> bool {
     std::fs::read(path).is_ok_and(|bytes| checkpoint::physics_hash(&bytes).is_ok())
 }
 
-/// That a saved state is not a configuration, and how to go on from it.
-fn not_a_saved_state(path: &Path) -> Failure {
-    let folder = path.parent().filter(|it| it.join("config.toml").exists());
+/// That a saved state is no configuration, and how to go on from it.
+fn is_no_configuration(state: &Path) -> Failure {
+    let path = state;
+    let folder = path
+        .parent()
+        .filter(|it| it.join(files::CONFIGURATION).exists());
     let help = match folder {
         Some(folder) if !folder.as_os_str().is_empty() => {
-            let folder = folder.display();
+            let folder = shell_word(folder);
             format!(
                 "go on with its run: peristalsis run --resume {folder}; or on a page: peristalsis view {folder} --from-state"
             )
         }
-        _ => format!("go on from it: peristalsis run --resume {}", path.display()),
+        _ => format!(
+            "go on from it: peristalsis run --resume {}",
+            shell_word(path)
+        ),
     };
     let is = "is the saved state of a run, not a configuration";
     Failure::usage(format!("{} {is}", path.display()), help)
 }
 
 /// That a file cannot be read, which may be the name of a preset.
-fn no_file(path: &Path, error: std::io::Error) -> Failure {
+fn no_file(path: &Path, error: std::io::Error, overrides: &[String]) -> Failure {
+    if let Some(key) = overrides.iter().find(|it| !it.contains('=')) {
+        let reason = format!("cannot read {}: {error}", path.display());
+        let help = format!(
+            "a key and its value are one word: --set {key}={}",
+            path.display()
+        );
+        return Failure::usage(reason, help);
+    }
     match preset(&path.to_string_lossy()) {
         Some(preset) => Failure::usage(
             format!("cannot read {}: {error}", path.display()),
@@ -122,7 +129,9 @@ pub(crate) fn study(path: &Path) -> Result<Specification, Failure> {
         let (file, store) = (shell_word(&of_store), shell_word(path));
         return Err(Failure::usage(
             format!("{} is a store, not the file of a study", path.display()),
-            format!("use its file: {file} --store {store}"),
+            format!(
+                "the file is {file}; study run takes the store with it: peristalsis study run {file} --store {store}"
+            ),
         ));
     }
     let of_one_run = |text: &str| {

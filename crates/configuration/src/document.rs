@@ -126,10 +126,14 @@ fn read_override(source: &Arc<Source>) -> Result<Table, String> {
     }
 }
 
-/// Letters, digits and `_-./`, beginning with a letter, `.` or `/`: a name, of a file too, that needs no quotes on the
+/// Letters, digits and `_-./`, beginning with a letter, `/`, `./` or `../`: a name, of a file too, that needs no quotes on the
 /// command line.
 fn is_bare_word(word: &str) -> bool {
-    word.starts_with(|first: char| first.is_ascii_alphabetic() || "./".contains(first))
+    let begins = |with: &str| word.starts_with(with);
+    (begins("/")
+        || begins("./")
+        || begins("../")
+        || word.starts_with(|it: char| it.is_ascii_alphabetic()))
         && word
             .chars()
             .all(|letter| letter.is_ascii_alphanumeric() || "_-./".contains(letter))
@@ -163,11 +167,14 @@ fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
         DeValue::String(text) => Node::Text(text.to_string()),
         DeValue::Integer(integer) => {
             let (digits, radix) = (integer.as_str(), integer.radix());
-            match (i64::from_str_radix(digits, radix), digits.parse()) {
-                (Ok(integer), _) => Node::Integer(integer),
+            match i64::from_str_radix(digits, radix) {
+                Ok(integer) => Node::Integer(integer),
                 // It may still be a real number.
-                (Err(_), Ok(number)) if radix == 10 => Node::Float(number),
-                _ => Node::Other("too large a whole number"),
+                Err(_) if radix == 10 => Node::Float(digits.parse().unwrap_or(f64::INFINITY)),
+                Err(_) => u128::from_str_radix(digits, radix)
+                    .map_or(Node::Float(f64::INFINITY), |large| {
+                        Node::Float(large as f64)
+                    }),
             }
         }
         DeValue::Float(float) => match float.as_str().parse::<f64>() {
@@ -325,6 +332,9 @@ mod tests {
         let state = entry(&table, "initial.state").unwrap();
         assert!(matches!(&state.item.node, Node::Text(text) if text == "jammed"));
         assert_eq!(state.item.origin.text(), "jammed");
+        let table = override_table("tube.file=../walls/helix.csv").unwrap();
+        let file = entry(&table, "tube.file").unwrap();
+        assert!(matches!(&file.item.node, Node::Text(text) if text == "../walls/helix.csv"));
         let table = override_table("drive.width=2.5").unwrap();
         let width = entry(&table, "drive.width").unwrap();
         assert!(matches!(width.item.node, Node::Float(2.5)));

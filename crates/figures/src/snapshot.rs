@@ -199,6 +199,9 @@ impl<'a> Part<'a> {
             check_sphere("grains", index, &grain.sphere)?;
             finite("axial velocity of a grain", grain.axial_velocity)?;
         }
+        if let Some(outlet) = snapshot.outlet {
+            finite("place of the outlet", outlet)?;
+        }
         grains.sort_by(|one, other| one.sphere.depth.total_cmp(&other.sphere.depth));
         let mut spheres = match snapshot.wall {
             SnapshotWall::Spheres(spheres) => spheres.to_vec(),
@@ -287,7 +290,7 @@ impl<'a> Part<'a> {
                     .with(Line::new("", along, &centres).tint(Tint::Grey));
             }
         }
-        let outlet = self.snapshot.outlet.filter(|it| (from..=to).contains(it));
+        let outlet = self.snapshot.outlet.filter(|it| from < *it && *it <= to);
         let outlet = outlet.map(|place| Reference::vertical(place).label("outlet"));
         panel.with(wall).with(grains).with_all(outlet)
     }

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from peristalsis import Simulation, _fit, _title, plot
+from peristalsis import Simulation, _core, _fit, _title, plot
 
 
 def test_every_picture_of_a_run(small: Simulation, tmp_path: Path) -> None:
@@ -139,3 +139,11 @@ def test_points_that_there_are_not_are_asked_for() -> None:
     with pytest.raises(ValueError, match="2 widths, but 1 ratios"):
         plot.stationary_flow([2.5, 2.6], [0.4])
     assert not plt.get_fignums()
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(0.9, 0.012, "0.900 ± 0.012"), (0.9, 0.03, "0.90 ± 0.03"), (1234.0, 56.0, "1230 ± 60"), (-0.01, 0.3, "0.0 ± 0.3")],
+)
+def test_a_value_with_its_error_has_the_digits_of_the_command_line(value: float, error: float, text: str) -> None:
+    assert _core.with_error(value, error) == text

@@ -121,13 +121,13 @@ impl StudyResults {
         Ok(path.map(|path| parquet::read(&path)).transpose()?)
     }
 
-    /// J/Jmax averaged over each period of a run; `None` where only its row was imported.
+    /// J/Jmax averaged over each period of a run; `None` where only its row was imported, or its series is too coarse.
     pub(crate) fn period_averages(&self, row: &Row<'_>) -> Result<Option<Vec<f64>>> {
         let Some(table) = self.series(row)? else {
             return Ok(None);
         };
         let (period, ratio) = (table.reals("period")?, table.reals("flow_rate_ratio")?);
-        // A row belongs to the period in which it ends; rows of a thinned series may be longer than a period.
+        // A row belongs to the period in which it ends.
         let ends = period.iter().map(|end| (end - 1e-6).floor());
         let rows: Vec<(f64, f64)> = ends.zip(ratio.iter().copied()).collect();
         let averages = rows.chunk_by(|one, other| one.0 == other.0).map(|rows| {
@@ -135,6 +135,11 @@ impl StudyResults {
             ratios.sum::<f64>() / rows.len() as f64
         });
         let mut averages: Vec<f64> = averages.collect();
+        // Of a run so long that a row covers several periods nothing is known of each.
+        let last = rows.last().map_or(0.0, |row| row.0 + 1.0);
+        if averages.len() as f64 != last {
+            return Ok(None);
+        }
         // What a run did of its last period is not an average over it.
         if period
             .last()

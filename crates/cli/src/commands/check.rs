@@ -73,7 +73,7 @@ fn tube(estimate: &Estimate) -> Vec<String> {
     lines.extend([
         time(estimate),
         format!(
-            "steps             {} of {} t; the shortest contact lasts about {} t, {} steps",
+            "steps             {} of {} t; a usual contact lasts about {} t, {} steps",
             estimate.steps,
             significant(estimate.time_step, 4),
             significant(estimate.contact_time, 3),
@@ -181,7 +181,7 @@ fn cost(estimate: &Estimate) -> Vec<String> {
     let why = match estimate.reference_only.is_some() || is_reference {
         true => "the reference kernel takes no more".to_owned(),
         false => format!(
-            "{} moving spheres, {SPHERES_OF_A_THREAD} or more for each thread, on {}",
+            "one for each {SPHERES_OF_A_THREAD} of {} moving spheres, at least one, on {}",
             estimate.moving_spheres,
             counted(processors(), "processor")
         ),

@@ -131,7 +131,7 @@ fn in_words(design: &Design) -> String {
     }
     if design.groups.iter().any(|group| group.place() == "near") {
         lines.push(
-            "near: slightly outside the range, by less than two tubes may differ that count as alike; treated as inside"
+            "near: outside the range, but by less than the difference up to which two tubes count as alike; treated as inside"
                 .to_owned(),
         );
     }

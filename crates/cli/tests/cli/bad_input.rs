@@ -76,6 +76,8 @@ fn a_wrong_override_is_its_own_place() {
         ("tube.wave=2", "did you mean tube.waves?"),
         ("a.b.c=2", "known here: "),
         ("run.seed=-1", "at most 9223372036854775807"),
+        ("run.seed=18446744073709551615", "is too large"),
+        ("run.seed=0xffffffffffffffff", "is too large"),
         ("drive.width=3.01", "2 tube.radius = 3"),
         ("drive.width", "key=value"),
     ] {

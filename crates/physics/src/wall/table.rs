@@ -17,36 +17,68 @@ pub struct RadiusTable {
     slopes: [f64; MOST_POINTS],
 }
 
+/// Why points are no curve over a wavelength.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum NoCurve {
+    /// There are not as many radii as phases.
+    #[error("{phases} phases and {radii} radii: each phase needs a radius")]
+    Unpaired {
+        /// Number of phases.
+        phases: usize,
+        /// Number of radii.
+        radii: usize,
+    },
+    /// There are too few or too many points.
+    #[error("{0} points, and a curve needs 3 to {MOST_POINTS}")]
+    Points(usize),
+    /// A phase is not from 0 to below 1.
+    #[error("phase {0} is not from 0 to below 1")]
+    Outside(f64),
+    /// A phase is not above the one before it.
+    #[error("phase {after} follows {before}: phases must ascend")]
+    Descending {
+        /// The one before.
+        before: f64,
+        /// The phase.
+        after: f64,
+    },
+    /// A radius is infinite or not a number.
+    #[error("radius {0} is not finite")]
+    NotFinite(f64),
+    /// All radii are alike.
+    #[error("all radii are {0}")]
+    Straight(f64),
+}
+
 impl RadiusTable {
     /// The curve through points of one wavelength.
     ///
     /// # Errors
     /// What is wrong with the points, unless there are 3 to [`MOST_POINTS`] phases, ascending from 0 on and below 1, and as
     /// many finite radii, not all alike.
-    pub fn new(phases: &[f64], radii: &[f64]) -> Result<Self, String> {
+    pub fn new(phases: &[f64], radii: &[f64]) -> Result<Self, NoCurve> {
         let number = phases.len();
         if radii.len() != number {
-            let radii = radii.len();
-            return Err(format!(
-                "{number} phases and {radii} radii: each phase needs a radius"
-            ));
+            let (phases, radii) = (number, radii.len());
+            return Err(NoCurve::Unpaired { phases, radii });
         }
         if !(3..=MOST_POINTS).contains(&number) {
-            return Err(format!(
-                "{number} points, and a curve needs 3 to {MOST_POINTS}"
-            ));
+            return Err(NoCurve::Points(number));
         }
         if let Some(phase) = phases.iter().find(|phase| !(0.0..1.0).contains(*phase)) {
-            return Err(format!("phase {phase} is not from 0 to below 1"));
+            return Err(NoCurve::Outside(*phase));
         }
         if let Some(pair) = phases.windows(2).find(|pair| pair[0] >= pair[1]) {
             let (before, after) = (pair[0], pair[1]);
-            return Err(format!("phase {after} follows {before}, and phases ascend"));
+            return Err(NoCurve::Descending { before, after });
+        }
+        if let Some(radius) = radii.iter().find(|radius| !radius.is_finite()) {
+            return Err(NoCurve::NotFinite(*radius));
         }
         let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
         let most = radii.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if !radii.iter().all(|radius| radius.is_finite()) || least == most {
-            return Err("radii are finite and not all alike".to_owned());
+        if least == most {
+            return Err(NoCurve::Straight(least));
         }
         let mut table = Self {
             number,
@@ -207,11 +239,15 @@ mod tests {
             (&[0.0, 0.5, 1.0], &[1.0, 2.0, 1.0], "phase 1 is not"),
             (&[-0.1, 0.5, 0.9], &[1.0, 2.0, 1.0], "phase -0.1 is not"),
             (&[0.0, 0.5, 0.9], &[1.0, 2.0], "3 phases and 2 radii"),
-            (&[0.0, 0.5, 0.9], &[1.0, 1.0, 1.0], "not all alike"),
-            (&[0.0, 0.5, 0.9], &[1.0, f64::NAN, 2.0], "finite"),
+            (&[0.0, 0.5, 0.9], &[1.0, 1.0, 1.0], "all radii are 1"),
+            (
+                &[0.0, 0.5, 0.9],
+                &[1.0, f64::NAN, 2.0],
+                "radius NaN is not finite",
+            ),
         ];
         for (phases, radii, reason) in no_curve {
-            let refused = RadiusTable::new(phases, radii).unwrap_err();
+            let refused = RadiusTable::new(phases, radii).unwrap_err().to_string();
             assert!(refused.contains(reason), "{phases:?} {radii:?}: {refused}");
         }
     }

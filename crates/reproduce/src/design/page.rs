@@ -59,8 +59,8 @@ pub fn page(design: &Design, name: &str, cost: &str) -> String {
                         }
                         @if design.groups.iter().any(|group| group.place() == "near") {
                             p {
-                                "near: slightly outside the range, by less than two tubes may differ that count as alike; treated "
-                                "as inside."
+                                "near: outside the range, but by less than the difference up to which two tubes count as alike; "
+                                "treated as inside."
                             }
                         }
                         @if !design.outside.is_empty() {

@@ -157,7 +157,7 @@ impl Run {
     /// would have them from the start.
     ///
     /// # Errors
-    /// [`RunError::Steering`] where grains have no friction, or for a coefficient that is not above 0, or above 1e6.
+    /// [`RunError::Steering`] where grains have no friction, or for a coefficient that is not above 0 and at most 1e6.
     pub fn set_friction(&mut self, kinetic: f64) -> Result<(), RunError> {
         let mut configuration = self.configuration.clone();
         let Some(friction) = &mut configuration.contact.friction else {
@@ -166,7 +166,7 @@ impl Run {
         };
         if !(kinetic > 0.0 && kinetic <= LARGEST) {
             let reason = format!(
-                "a coefficient of friction of {kinetic} is not above 0, or above {LARGEST:e}"
+                "a coefficient of friction of {kinetic} is not above 0 and at most {LARGEST:e}"
             );
             return Err(RunError::Steering { reason });
         }

@@ -132,7 +132,7 @@ fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String
     }
     let keys = keys.join(", ");
     format!(
-        ". Then multiply what is in units of the {name} ({keys}) by {factor:.3e}, so that it stays the same in SI"
+        ". With that {name} multiply what is in units of it ({keys}) by {factor:.3e}, so that it stays the same in SI"
     )
 }
 

@@ -7,7 +7,7 @@ use std::path::{Component, Path};
 
 use peristalsis_formats::atomic;
 
-use super::{RUNS, State, Store, Verdict, done};
+use super::{GONE, RUNS, State, Store, Verdict, done};
 use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::store::entry::Entry;
@@ -139,9 +139,8 @@ fn unfinished(verdict: Verdict) -> Option<String> {
     match verdict {
         Verdict::Done { .. } => None,
         Verdict::Damaged(reason) => Some(reason),
-        Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
-            Some("it is not finished".to_owned())
-        }
+        Verdict::Nothing | Verdict::Checkpointed => Some(GONE.to_owned()),
+        Verdict::Failed(reason) => Some(format!("it failed: {reason}")),
     }
 }
 

@@ -20,7 +20,7 @@ pub struct Verification {
     pub whole: usize,
     /// Finished runs with an imported row and no files.
     pub imported: usize,
-    /// Runs whose files differ from their seal, with what was wrong; what there is of them was moved aside.
+    /// Runs that were finished and have no seal, or files that differ from it, with what is wrong; the latter were moved aside.
     pub quarantined: Vec<(Identity, String)>,
     /// Copies of imported tables that are gone, or were changed and moved aside, with the number of runs that went with each.
     pub lost_tables: BTreeMap<String, usize>,
@@ -63,9 +63,9 @@ impl Store {
                     news.push(not_whole(identity, &reason));
                     changed.push((identity, Entry::new(State::Quarantined, Some(reason))));
                 }
-                Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
+                unsealed => {
                     news.push(not_whole(identity, GONE));
-                    changed.push((identity, Entry::new(State::Pending, None)));
+                    changed.push((identity, unsealed.entry()));
                 }
             }
         }

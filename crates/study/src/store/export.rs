@@ -35,7 +35,7 @@ pub struct Exported {
     pub failed: usize,
     /// Finished runs that have no time series here: they were imported as rows, or the study does not keep J/Jmax.
     pub without_series: usize,
-    /// Runs whose files are not those of their seal, with the reason; they are missing.
+    /// Runs that were finished and have no seal, or files that differ from it, with what is wrong; they are missing.
     pub quarantined: Vec<(Identity, String)>,
 }
 
@@ -185,8 +185,8 @@ impl Store {
                     index.note([(run.identity, &entry)])?;
                     quarantined.push((run.identity, reason));
                 }
-                Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
-                    index.note([(run.identity, &Entry::new(State::Pending, None))])?;
+                unsealed => {
+                    index.note([(run.identity, &unsealed.entry())])?;
                     quarantined.push((run.identity, GONE.to_owned()));
                 }
             }

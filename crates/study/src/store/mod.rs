@@ -56,14 +56,17 @@ const QUARANTINE: &str = "quarantine";
 const IMPORTED: &str = "imported";
 const REASON: &str = "reason.txt";
 
-/// Of a finished run, that there are no files.
-const GONE: &str = "its files are gone";
+/// Of a run that was finished, that it has no seal.
+const GONE: &str = "its seal, done.json, is gone";
 
-/// Of a finished run whose files are not those of its seal: what becomes of them, and of the run.
+/// Of a run that was finished and whose files are not those of its seal: what becomes of them, and of the run.
 pub fn not_whole(identity: Identity, reason: &str) -> String {
-    format!(
-        "the files of run {identity} are not those of its seal ({reason}): what is there is moved aside, and the run is to be computed again"
-    )
+    match reason {
+        GONE => format!("run {identity} was finished, and {GONE}: to be computed again"),
+        _ => format!(
+            "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
+        ),
+    }
 }
 
 /// How long an owner of whom nothing else is known may be silent before its lease is void.

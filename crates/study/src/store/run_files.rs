@@ -13,7 +13,7 @@ use peristalsis_run::{
 use serde_json::Value;
 
 use super::seal::{SEAL, Seal};
-use super::write_if_other;
+use super::{Entry, State, done, write_if_other};
 use crate::error::{Result, StudyError};
 use crate::identity::{Identity, PHYSICS_VERSION, Record};
 use crate::plan::{Plan, PlannedRun};
@@ -48,6 +48,19 @@ pub(crate) enum Verdict {
     Damaged(String),
     /// It ended in this error.
     Failed(String),
+}
+
+impl Verdict {
+    /// The entry of a run that is not finished, or no more.
+    pub(crate) fn entry(self) -> Entry {
+        match self {
+            Self::Nothing => Entry::new(State::Pending, None),
+            Self::Checkpointed => Entry::new(State::Checkpointed, None),
+            Self::Damaged(reason) => Entry::new(State::Quarantined, Some(reason)),
+            Self::Failed(reason) => Entry::new(State::Failed, Some(reason)),
+            Self::Done { row, stamp } => done(&row, stamp),
+        }
+    }
 }
 
 /// All that is needed to begin a run.

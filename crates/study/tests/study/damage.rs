@@ -84,6 +84,20 @@ fn damage_is_found_when_work_goes_on_and_when_tables_are_written() {
     assert!(folder.ends_with(exported.quarantined[0].0.to_string()));
     place.complete();
     assert_eq!(place.tables(), tables);
+
+    // Without its seal a run is not finished: its files stay, and an archive does without it.
+    let folder = &place.run_folders()[0];
+    fs::remove_file(folder.join("done.json")).unwrap();
+    let packed = place.store().pack(&place.path("runs.tar")).unwrap();
+    assert_eq!((packed.runs, packed.refused.len()), (5, 1));
+    let exported = place.store().export(&place.path("partial"), false).unwrap();
+    let [(_, reason)] = &exported.quarantined[..] else {
+        panic!("{:?}", exported.quarantined);
+    };
+    assert!(reason.contains("done.json"), "{reason}");
+    assert!(folder.join("row.csv").is_file());
+    place.complete();
+    assert_eq!(place.tables(), tables);
 }
 
 #[test]

@@ -367,7 +367,7 @@ async fn live_in_study(
         Ok(session) => talk(&shared, session, upgrade),
         Err(Closed::Unknown) => StatusCode::NOT_FOUND.into_response(),
         Err(Closed::Full) => busy(&format!(
-            "{OPEN} runs of this study are open, as many as this viewer computes"
+            "{OPEN} runs are open, as many as this viewer computes"
         )),
         Err(Closed::Failed(error)) => {
             (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response()

@@ -106,7 +106,7 @@ fn flow(run: &Run, summary: &Summary) -> String {
             let flow = significant(summary.flow_rate() + 0.0, 4);
             let why = match configuration.drive.period() {
                 None => "the wave stands",
-                Some(_) => "no grain was inside",
+                Some(_) => "the wave stood or no grain was inside",
             };
             format!("J = {flow} t^-1, mean of its last {late} %; {why}, so J/Jmax is not defined")
         }

@@ -131,7 +131,9 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
         ));
     }
     for (identity, reason) in &packed.refused {
-        say(&format!("run {identity} is left out: {reason}"));
+        say(&format!(
+            "run {identity} is left out ({reason}): study verify moves it aside, study run computes it again"
+        ));
     }
     print(&format!(
         "{} in {archive}\n",

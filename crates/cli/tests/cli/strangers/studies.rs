@@ -226,9 +226,27 @@ fn what_a_store_lacks_is_told() {
     place
         .call("study verify kept")
         .expect_code(1)
-        .shows(&["3 finished runs", "its files are gone"]);
+        .shows(&["3 finished runs", "its seal, done.json, is gone"]);
     place.write("empty.tar", "");
     place.refuses("study import kept empty.tar", &["it is empty"]);
+    place.refuses(
+        "study run kept",
+        &["is a store", "study run kept/study.toml --store kept"],
+    );
+}
+
+/// A student: a run whose files had changed was not in the archive, and nobody said so.
+#[test]
+fn what_an_archive_lacks_is_told() {
+    let place = finished();
+    let runs = std::fs::read_dir(place.path("kept/runs")).unwrap();
+    let changed = runs.map(|entry| entry.unwrap().path()).next().unwrap();
+    std::fs::write(changed.join("summary.json"), "{}").unwrap();
+    place
+        .call("study pack kept all.tar")
+        .expect_code(1)
+        .shows(&["3 finished runs in all.tar"])
+        .says(&["is left out", "summary.json", "study verify"]);
 }
 
 /// A full disk while tables are exported, which SIGXFSZ would end.
