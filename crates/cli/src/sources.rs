@@ -36,12 +36,13 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
 
 /// Of the text of a study or of a design: that it is not the configuration of one run, and what to do with it.
 pub fn not_of_one_run(name: &str, text: &str) -> Option<(String, String)> {
+    let word = shell_word(name.as_ref());
     let (is, command) = if is_a_study(text) {
-        ("a study", format!("study run {name}, or study plan {name}"))
+        ("a study", format!("study run {word}, or study plan {word}"))
     } else if is_design(text) {
         (
             "a design",
-            format!("design {name} --write FILE, then run FILE"),
+            format!("design {word} --write FILE, then run FILE"),
         )
     } else {
         return None;
@@ -58,7 +59,7 @@ pub(crate) fn name_and_text(
         return Ok(None);
     };
     let text = text_of(path).map_err(|error| match is_saved_state(path) {
-        true => is_no_configuration(path),
+        true => of_saved_state(path),
         false => no_file(path, error, &arguments.overrides),
     })?;
     let name = match is_standard_input(path) {
@@ -74,11 +75,9 @@ fn is_saved_state(path: &Path) -> bool {
 }
 
 /// That a saved state is no configuration, and how to go on from it.
-fn is_no_configuration(state: &Path) -> Failure {
-    let path = state;
-    let folder = path
-        .parent()
-        .filter(|it| it.join(files::CONFIGURATION).exists());
+fn of_saved_state(state: &Path) -> Failure {
+    let folder = state.parent();
+    let folder = folder.filter(|it| it.join(files::CONFIGURATION).exists());
     let help = match folder {
         Some(folder) if !folder.as_os_str().is_empty() => {
             let folder = shell_word(folder);
@@ -88,11 +87,11 @@ fn is_no_configuration(state: &Path) -> Failure {
         }
         _ => format!(
             "go on from it: peristalsis run --resume {}",
-            shell_word(path)
+            shell_word(state)
         ),
     };
     let is = "is the saved state of a run, not a configuration";
-    Failure::usage(format!("{} {is}", path.display()), help)
+    Failure::usage(format!("{} {is}", state.display()), help)
 }
 
 /// That a file cannot be read, which may be the name of a preset.

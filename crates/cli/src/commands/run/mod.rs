@@ -10,6 +10,7 @@ use std::sync::Once;
 
 use peristalsis_configuration::{Configuration, InitialState, SourceFile, Sources};
 use peristalsis_engine::{Instructions, processors};
+use peristalsis_formats::shell_word;
 use peristalsis_run::{
     Run, RunError, RunFolder, Trajectory, TrajectoryPlan, read_state, scheduled_wavelengths,
     warnings,
@@ -22,7 +23,6 @@ use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
 use crate::stop::Stop;
-use peristalsis_formats::shell_word;
 
 pub(crate) use self::words::{DISCHARGE, MASS_FLOW, measured};
 use self::words::{how_far, in_words};

@@ -9,6 +9,7 @@ use std::time::Instant;
 use peristalsis_analysis::mean_and_error;
 use peristalsis_analysis::number::known_error;
 use peristalsis_engine::processors;
+use peristalsis_formats::shell_word;
 use peristalsis_run::{
     RunError, RunFolder, Status, Summary, Warning, files, next_folder, warnings,
 };
@@ -23,7 +24,6 @@ use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, name};
 use crate::stop::Stop;
-use peristalsis_formats::shell_word;
 
 /// Name of the folder of a replicate, before its seed.
 const STEM: &str = "seed-";

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use peristalsis_formats::shell_word;
 use peristalsis_study::{Ending, State, Store, work_on};
 
 use super::progress::StudyDisplay;
@@ -11,7 +12,6 @@ use crate::commands::{counted, say, tell};
 use crate::failure::Failure;
 use crate::sources;
 use crate::stop::Stop;
-use peristalsis_formats::shell_word;
 
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;

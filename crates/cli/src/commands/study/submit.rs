@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 
+use peristalsis_formats::shell_word;
 use peristalsis_study::Store;
 
 use super::{SubmitArguments, store_path};
 use crate::commands::{counted, print, refuse_loss, say_if_replaced};
 use crate::failure::Failure;
 use crate::sources;
-use peristalsis_formats::shell_word;
 
 /// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
 const WARNING: Duration = Duration::from_secs(60);
