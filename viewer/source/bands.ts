@@ -1,12 +1,8 @@
 import * as three from "three";
-import { type Colour, colourAt } from "./fields";
+import { colourAt } from "./fields";
+import { FORCE, FORCES_COVERED } from "./messages";
 import type { Frame } from "./protocol";
 import { BAND_FRAGMENT, BAND_VERTEX } from "./shaders";
-
-/** Normal forces from weak to strong, to be seen on a dark stage. */
-export const FORCE: Colour[] = [[70, 60, 110], [150, 50, 120], [225, 80, 60], [255, 170, 50], [255, 250, 190]];
-/** Part of the contacts whose force lies within the colours; crates/run/src/scene/spheres.rs has the same. */
-const COVERED = 0.97;
 
 /** The force that the colours and widths of contacts reach to; it follows slowly, so that nothing flickers. */
 export class ForceScale {
@@ -19,7 +15,7 @@ export class ForceScale {
     const forces = new Float32Array(Math.floor((contacts - 1) / each) + 1);
     for (let k = 0; k < forces.length; k++) forces[k] = touching[6 * each * k + 5];
     forces.sort();
-    const now = forces[Math.floor(COVERED * (forces.length - 1))];
+    const now = forces[Math.floor(FORCES_COVERED * (forces.length - 1))];
     this.largest = this.largest > 0 ? this.largest + 0.05 * (now - this.largest) : now;
   }
 }

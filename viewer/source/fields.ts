@@ -1,4 +1,5 @@
 import { written } from "./charts";
+import { GRAINS_COVERED, MOST_CONTACTS } from "./messages";
 import type { Frame, Welcome } from "./protocol";
 
 /** A quantity that colours grains. */
@@ -15,19 +16,13 @@ export interface Field {
   values(frame: Frame, tube: Welcome, into: Float32Array): void;
 }
 
-/**
- * Part of the grains whose pressure, and where the wave stands speed, lies within the colours. crates/run/src/scene/field.rs
- * has the same.
- */
-const COVERED = 0.98;
-
 /** The speed that colours reach to: that of the wave, or where it stands a round one that few grains exceed. */
 export function speedOf({ wave_speed, grains, position, velocity }: Frame): number {
   if (wave_speed !== 0) return wave_speed;
   const speeds: number[] = [];
   for (let i = 0; i < grains; i++)
     if (!Number.isNaN(position[3 * i])) speeds.push(Math.hypot(velocity[3 * i], velocity[3 * i + 1], velocity[3 * i + 2]));
-  const most = Float64Array.from(speeds).sort()[Math.floor(COVERED * (speeds.length - 1))];
+  const most = Float64Array.from(speeds).sort()[Math.floor(GRAINS_COVERED * (speeds.length - 1))];
   if (!(most > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(most));
   return power * ([1, 2, 5].find((it) => it * power >= most) ?? 10);
@@ -86,13 +81,12 @@ export const FIELDS: Record<string, Field> = {
   },
   coordination: {
     name: "contacts of a grain",
-    // To as many as MOST_CONTACTS there.
-    ends: ["0", "12"],
+    ends: ["0", String(MOST_CONTACTS)],
     diverging: false,
     ofContacts: true,
     values(frame, _, into) {
       into.fill(lacks(this, frame) ? NaN : 0);
-      eachContact(frame, (grain) => (into[grain] += 1 / 12));
+      eachContact(frame, (grain) => (into[grain] += 1 / MOST_CONTACTS));
     },
   },
   pressure: {
@@ -105,7 +99,7 @@ export const FIELDS: Record<string, Field> = {
       // Sum of f r/(3 V), V = pi d^3/6 and r = d/2: f/(pi d^2).
       into.fill(0);
       eachContact(frame, (grain, force) => (into[grain] += force / (Math.PI * frame.diameter[grain] ** 2)));
-      const largest = into.slice().sort()[Math.floor(COVERED * (into.length - 1))];
+      const largest = into.slice().sort()[Math.floor(GRAINS_COVERED * (into.length - 1))];
       if (scaled !== tube) [scaled, usual] = [tube, 0];
       usual = usual > 0 ? usual + 0.05 * (largest - usual) : largest;
       this.ends[1] = `${written(usual, 2)} m/(d t²)`;

@@ -3,6 +3,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Ink } from "./charts";
 import { Bands, ForceScale, type Images } from "./bands";
 import { type Colour, colourAt, type Field, partsOf, stops } from "./fields";
+import { SHRUNK, STONE } from "./messages";
 import type { Frame, Welcome } from "./protocol";
 import { drawn, Side, Spheres, type Uniforms } from "./spheres";
 
@@ -15,8 +16,6 @@ const SLOW = 55;
 const QUICK = 24;
 /** Pictures that are quick, one after the other, before pixels come back. */
 const PATIENCE = 90;
-/** Part of their size at which grains are drawn among the forces between them. */
-const SHRUNK = 0.32;
 /** Length of the tube and its images in the picture at most, in radii. */
 const LONGEST = 60;
 /** Spheres of the wall in one picture, about: where there would be more, fewer and larger ones stand for them. */
@@ -104,7 +103,7 @@ export class Scene {
   }
 
   private own(kind: number, side: Side, glass: number): Uniforms {
-    const stone = new three.Color().setRGB(207 / 255, 202 / 255, 193 / 255);
+    const stone = new three.Color().setRGB(STONE[0] / 255, STONE[1] / 255, STONE[2] / 255);
     return {
       kind: { value: kind },
       side: { value: side },

@@ -1,3 +1,5 @@
+import { ROD } from "./messages";
+
 /**
  * Spheres as squares that face the eye: each pixel meets the sphere by its equation, so that they are round at any size and
  * cut one another exactly.
@@ -124,7 +126,7 @@ void main() {
   vec3 side = normalize(cross(end - begin, middle));
   part = clamp(force, 0.0, 1.0);
   across = position.y;
-  gl_Position = projectionMatrix * vec4(middle + position.y * (0.02 + 0.11 * part) * side, 1.0);
+  gl_Position = projectionMatrix * vec4(middle + position.y * (${ROD[0]} + ${ROD[1]} * part) * side, 1.0);
 }`;
 
 export const BAND_FRAGMENT = /* glsl */ `

@@ -406,7 +406,12 @@ mod tests {
         let outlet = Some(0.75 * periodic.tube);
         let open = Snapshot { outlet, ..periodic };
         assert_eq!(spheres(&[open]).len(), 1);
-        let names_the_outlet = |one| draw(&[one]).unwrap().svg().contains("aria-label=\"outlet\"");
+        let names_the_outlet = |one| {
+            draw(&[one])
+                .unwrap()
+                .svg()
+                .contains("aria-label=\"outlet\"")
+        };
         assert!(names_the_outlet(open) && !names_the_outlet(periodic));
         let nowhere = Snapshot {
             outlet: Some(f64::NAN),

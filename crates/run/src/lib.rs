@@ -40,7 +40,7 @@ pub use peristalsis_render::{Film, FilmFormat, FilmPlan, Picture, RenderError};
 pub use pictures::{snapshot_stack, space_time, title};
 pub use recorder::{Recorder, THRESHOLDS};
 pub use run::{Mark, Progress, Run};
-pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing};
+pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing, drawn};
 pub use si::SiEstimate;
 pub use stopping::Stopping;
 pub use summary::{

@@ -1,9 +1,11 @@
-//! The messages between program and page in TypeScript, `viewer/source/messages.ts`, from the types here.
+//! The messages between program and page in TypeScript, `viewer/source/messages.ts`, from the types here; and the numbers by
+//! which both draw.
 //!
 //! `GOLDEN=write cargo test -p peristalsis-viewer --lib typescript` writes it anew; then `just viewer-bundle`.
 
 use std::path::Path;
 
+use peristalsis_run::drawn;
 use ts_rs::{Config, TS};
 
 use crate::frame::{Head, Shown};
@@ -75,7 +77,57 @@ fn file() -> String {
         declared::<study::Shown<'static>>(),
         declared::<study::ShownColumn<'static>>(),
     ];
-    format!("{HEAD}\n{}", types.join("\n"))
+    format!("{HEAD}\n{}\n{}", types.join("\n"), constants())
+}
+
+/// What pictures and page draw alike.
+fn constants() -> String {
+    let constants = [
+        (
+            "Colour of the wall in sRGB.",
+            "STONE",
+            format!("{:?}", drawn::STONE),
+        ),
+        (
+            "Part of their size at which grains are drawn among the forces between them.",
+            "SHRUNK",
+            drawn::SHRUNK.to_string(),
+        ),
+        (
+            "Radius of the rod that stands for the weakest force, and what the strongest adds to it [d].",
+            "ROD",
+            format!("{:?}", drawn::ROD),
+        ),
+        (
+            "Part of the contacts whose force lies within the colours.",
+            "FORCES_COVERED",
+            drawn::FORCES_COVERED.to_string(),
+        ),
+        (
+            "Part of the grains whose speed or pressure lies within the colours.",
+            "GRAINS_COVERED",
+            drawn::GRAINS_COVERED.to_string(),
+        ),
+        (
+            "Contacts that most grains have fewer than, where the colours end.",
+            "MOST_CONTACTS",
+            drawn::MOST_CONTACTS.to_string(),
+        ),
+        (
+            "Colours of forces from weak to strong, in equal steps, in sRGB.",
+            "FORCE",
+            format!("{:?}", drawn::force_colours()),
+        ),
+    ];
+    let lines = constants.map(|(meaning, name, value)| {
+        let kind = if value.starts_with("[[") {
+            ": [number, number, number][]"
+        } else {
+            ""
+        };
+        format!("/** {meaning} */\nexport const {name}{kind} = {value};\n")
+    });
+    lines.concat()
 }
 
 #[test]

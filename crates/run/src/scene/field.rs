@@ -5,6 +5,7 @@ use peristalsis_figures::{ColourScale, Palette, Units};
 use peristalsis_formats::Frame;
 
 use super::caption::cycles;
+use super::drawn::{GRAINS_COVERED, MOST_CONTACTS};
 use super::{refused, units};
 use crate::error::RunError;
 use crate::run::Run;
@@ -47,12 +48,8 @@ pub(super) struct Coloured {
     usual_pressure: f64,
 }
 
-/// Contacts that most grains have fewer than; the page's colours end there too (`viewer/source/fields.ts`).
-const MOST_CONTACTS: f64 = 12.0;
 /// Pressures of packed grains in units of k/d and of Y.
 const USUAL_PRESSURES: [f64; 2] = [0.2, 0.01];
-/// Part of the grains whose speed or pressure lies within the colours, of the page too.
-const COVERED: f64 = 0.98;
 
 impl Coloured {
     pub(super) fn new(field: Field, run: &Run, samples: &[Frame]) -> Result<Self, RunError> {
@@ -146,7 +143,7 @@ impl Coloured {
                 (-largest, largest)
             }
             Field::Speed | Field::AngularVelocity if self.is_moving => (0.0, 1.0),
-            Field::Speed | Field::AngularVelocity => (0.0, at(COVERED).max(1e-9)),
+            Field::Speed | Field::AngularVelocity => (0.0, at(GRAINS_COVERED).max(1e-9)),
             Field::Diameter => between(at(0.0), at(1.0)),
             Field::AxialDisplacement => {
                 let farthest = at(0.0).abs().max(at(1.0).abs());
@@ -155,7 +152,7 @@ impl Coloured {
             }
             Field::Position => (0.0, 1.0),
             Field::Coordination => (0.0, MOST_CONTACTS),
-            Field::Pressure if at(COVERED) > 0.0 => (0.0, at(COVERED)),
+            Field::Pressure if at(GRAINS_COVERED) > 0.0 => (0.0, at(GRAINS_COVERED)),
             Field::Pressure => (0.0, self.usual_pressure),
         }
     }

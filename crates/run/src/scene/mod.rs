@@ -1,6 +1,7 @@
 //! The tube as it looks: pictures of single instants, with their scales and captions.
 
 mod caption;
+pub mod drawn;
 mod field;
 mod spheres;
 

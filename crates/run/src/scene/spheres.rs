@@ -7,17 +7,11 @@ use peristalsis_formats::trajectory::FrameContact;
 use peristalsis_render::{Colour, Finish, Sphere};
 
 use super::caption::cycles;
+use super::drawn::{FORCES_COVERED, ROD, SHRUNK, STONE};
 use super::{Aspect, Eye, PictureScene, Place, SECTION, WallLook};
-
-/// Colour of the wall.
-const STONE: [u8; 3] = [207, 202, 193];
 
 /// Grains so many radii from the axis have left the picture, or wait at the inlet of an open tube.
 const FAR: f64 = 2.75;
-/// Part of their size at which grains are drawn among the forces between them.
-const SHRUNK: f64 = 0.32;
-/// Part of the contacts whose force lies within the colours, of the page too (`viewer/source/bands.ts`).
-const COVERED: f64 = 0.97;
 /// From one sphere of a rod to the next: a part of its radius, which nobody sees, but not less than so much \[d\].
 const SPACING: (f64, f64) = (0.1, 0.008);
 /// The largest normal force within the colours where none is known, with linear and with Hertz contacts.
@@ -37,7 +31,7 @@ pub(super) fn force_scale(samples: &[Frame], units: Units) -> ColourScale {
     let mut forces: Vec<f64> = contacts.map(|contact| contact.normal_force).collect();
     forces.sort_unstable_by(f64::total_cmp);
     let largest = match (forces.len().checked_sub(1), units) {
-        (Some(last), _) => forces[(COVERED * last as f64) as usize],
+        (Some(last), _) => forces[(FORCES_COVERED * last as f64) as usize],
         (None, Units::Linear) => USUAL_FORCES[0],
         (None, Units::Hertz) => USUAL_FORCES[1],
     };
@@ -68,7 +62,7 @@ impl PictureScene {
                 true => -separation,
                 false => -0.5 * frame.diameter[first] * separation.normalize(),
             };
-            let radius = 0.02 + 0.11 * scale.part(contact.normal_force);
+            let radius = ROD[0] + ROD[1] * scale.part(contact.normal_force);
             let [red, green, blue] = scale.srgb(contact.normal_force);
             let pieces = (way.length() / (SPACING.0 * radius).max(SPACING.1)).ceil();
             rods.extend((0..=pieces as u32).map(|piece| Sphere {
