@@ -274,7 +274,8 @@ fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
         let seed = seeds[0];
         let alike = match seeds.len() - 1 {
             0 => String::new(),
-            others => format!(" ({} more with such a warning)", counted(others, "seed")),
+            1 => " (1 more seed has such a warning)".to_owned(),
+            others => format!(" ({others} more seeds have such a warning)"),
         };
         warning.clone().under(&format!("with seed {seed}{alike}"))
     };
@@ -288,79 +289,13 @@ fn conclude(
     worked: Vec<Worked>,
     stop: &Stop,
 ) -> Result<ExitCode, Failure> {
-    let outcomes = || {
-        worked
-            .iter()
-            .filter_map(|(.., outcome)| outcome.as_ref().ok())
+    let came_to = Ensemble::of(&worked);
+    let printed = match arguments.json {
+        true => print_json(&came_to.report(folder, &worked)),
+        false => print(&came_to.in_words(&worked)),
     };
-    let complete = outcomes().filter(|it| matches!(it.ending, Ending::Complete));
-    let complete: Vec<&Outcome> = complete.collect();
-    let ratios = complete.iter().map(|it| it.summary.flow_rate_ratio.0);
-    let flow = Scatter::of(ratios.filter(|ratio| ratio.is_finite()).collect());
-    let flows = complete.iter().filter_map(|it| mass_flow(&it.summary));
-    let (mass_flows, units): (Vec<_>, Vec<_>) = flows.map(|((rate, _), unit)| (rate, unit)).unzip();
-    let mass_flow = Scatter::of(mass_flows).zip(units.first());
-    let times: Vec<f64> = complete
-        .iter()
-        .filter_map(|it| it.summary.transition_time)
-        .collect();
-    let transitions = times.len();
-    // Where some had none, the mean of the others would be too early.
-    let transition = match transitions == complete.len() {
-        true => Scatter::of(times),
-        false => None,
-    };
-    if arguments.json {
-        let of_replicate = |(seed, folder, outcome): &Worked| {
-            let mut all = match outcome {
-                Ok(outcome) => serde_json::to_value(&outcome.summary).unwrap_or_default(),
-                Err(error) => json!({ "status": "failed", "message": error.to_string() }),
-            };
-            all["seed"] = json!(seed);
-            all["folder"] = json!(folder.to_string_lossy());
-            all
-        };
-        print_json(&json!({
-            "folder": folder.to_string_lossy(),
-            "replicates": worked.iter().map(of_replicate).collect::<Vec<_>>(),
-            "complete": complete.len(),
-            "flow_rate_ratio": flow.as_ref().map(Scatter::report),
-            "mass_flow": mass_flow.as_ref().map(|(flow, unit)| {
-                let mut report = flow.report();
-                report["unit"] = json!(unit);
-                report
-            }),
-            "transitions": transitions,
-            "transition_time": transition.as_ref().map(Scatter::report),
-        }))?;
-    } else {
-        let lines = worked
-            .iter()
-            .filter_map(|(seed, _, outcome)| Some(line(*seed, outcome.as_ref().ok()?)));
-        let mut text: String = lines.map(|line| line + "\n").collect();
-        if let Some(flow) = &flow {
-            text += &format!("J/Jmax = {}\n", flow.in_words());
-        }
-        if let Some((flow, unit)) = &mass_flow {
-            let name = complete
-                .first()
-                .map_or(MASS_FLOW, |it| name_of_flow(&it.summary));
-            text += &format!("{name} in {unit} = {}\n", flow.in_words());
-        }
-        // Without a wave there is nothing to pass through.
-        let tell = complete.iter().filter(|it| !is_too_short(&it.summary));
-        let runs = flow.as_ref().map_or(0, |_| tell.count());
-        match (&transition, runs) {
-            (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words()),
-            (None, 0) => {}
-            (None, number) => {
-                let runs = counted(number, "run");
-                text += &format!("transition in {transitions} of {runs}\n");
-            }
-        }
-        print(&text)?;
-    }
-    let (place, complete) = (shell_word(folder), counted(complete.len(), "seed"));
+    printed?;
+    let (place, complete) = (shell_word(folder), counted(came_to.complete.len(), "seed"));
     let mut is_well = true;
     for (seed, _, outcome) in worked {
         let failure = match outcome {
@@ -388,6 +323,100 @@ fn conclude(
     }
     tell(arguments.quiet, &format!("written to {place}"));
     Ok(code_of(is_well))
+}
+
+/// What the complete ones of the replicates came to.
+struct Ensemble<'a> {
+    complete: Vec<&'a Outcome>,
+    /// J/Jmax.
+    flow: Option<Scatter>,
+    /// With its unit.
+    mass_flow: Option<(Scatter, &'static str)>,
+    /// How many had a transition.
+    transitions: usize,
+    /// Its time, where all had one: the mean of some would be too early.
+    transition: Option<Scatter>,
+}
+
+impl<'a> Ensemble<'a> {
+    fn of(worked: &'a [Worked]) -> Self {
+        let outcomes = worked
+            .iter()
+            .filter_map(|(.., outcome)| outcome.as_ref().ok());
+        let complete: Vec<&Outcome> = outcomes
+            .filter(|it| matches!(it.ending, Ending::Complete))
+            .collect();
+        let summaries = || complete.iter().map(|it| &it.summary);
+        let ratios = summaries().map(|it| it.flow_rate_ratio.0);
+        let flows = summaries().filter_map(mass_flow);
+        let (mass_flows, units): (Vec<_>, Vec<_>) =
+            flows.map(|((rate, _), unit)| (rate, unit)).unzip();
+        let times: Vec<f64> = summaries().filter_map(|it| it.transition_time).collect();
+        let transitions = times.len();
+        Self {
+            flow: Scatter::of(ratios.filter(|ratio| ratio.is_finite()).collect()),
+            mass_flow: Scatter::of(mass_flows).zip(units.first().copied()),
+            transitions,
+            transition: (transitions == complete.len())
+                .then(|| Scatter::of(times))
+                .flatten(),
+            complete,
+        }
+    }
+
+    /// In JSON, with each replicate.
+    fn report(&self, folder: &Path, worked: &[Worked]) -> serde_json::Value {
+        let of_replicate = |(seed, folder, outcome): &Worked| {
+            let mut all = match outcome {
+                Ok(outcome) => serde_json::to_value(&outcome.summary).unwrap_or_default(),
+                Err(error) => json!({ "status": "failed", "message": error.to_string() }),
+            };
+            all["seed"] = json!(seed);
+            all["folder"] = json!(folder.to_string_lossy());
+            all
+        };
+        json!({
+            "folder": folder.to_string_lossy(),
+            "replicates": worked.iter().map(of_replicate).collect::<Vec<_>>(),
+            "complete": self.complete.len(),
+            "flow_rate_ratio": self.flow.as_ref().map(Scatter::report),
+            "mass_flow": self.mass_flow.as_ref().map(|(flow, unit)| {
+                let mut report = flow.report();
+                report["unit"] = json!(unit);
+                report
+            }),
+            "transitions": self.transitions,
+            "transition_time": self.transition.as_ref().map(Scatter::report),
+        })
+    }
+
+    /// A line for each replicate, then for each number of all.
+    fn in_words(&self, worked: &[Worked]) -> String {
+        let lines = worked
+            .iter()
+            .filter_map(|(seed, _, outcome)| Some(line(*seed, outcome.as_ref().ok()?)));
+        let mut text: String = lines.map(|line| line + "\n").collect();
+        if let Some(flow) = &self.flow {
+            text += &format!("J/Jmax = {}\n", flow.in_words());
+        }
+        if let Some((flow, unit)) = &self.mass_flow {
+            let first = self.complete.first();
+            let name = first.map_or(MASS_FLOW, |it| name_of_flow(&it.summary));
+            text += &format!("{name} in {unit} = {}\n", flow.in_words());
+        }
+        // Without a wave there is nothing to pass through.
+        let tell = self.complete.iter().filter(|it| !is_too_short(&it.summary));
+        let runs = self.flow.as_ref().map_or(0, |_| tell.count());
+        match (&self.transition, runs) {
+            (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words()),
+            (None, 0) => {}
+            (None, number) => {
+                let (transitions, runs) = (self.transitions, counted(number, "run"));
+                text += &format!("transition in {transitions} of {runs}\n");
+            }
+        }
+        text
+    }
 }
 
 /// Mean and scatter of a number over the seeds.

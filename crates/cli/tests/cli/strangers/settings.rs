@@ -89,7 +89,7 @@ fn leaks_and_overlaps_are_the_same_warnings_in_run_and_summary_and_check_foretel
 fn seeds_side_by_side_warn_once_of_a_kind() {
     let dense = "run --preset frictionless grains.volume_fraction=0.99 tube.waves=2 run.periods=1";
     let seeds = Place::new().does(&format!("{dense} --seeds 1..2"));
-    let key = "warning: grains.volume_fraction: with seed 1 (1 seed more with such a warning) the grains already overlap";
+    let key = "warning: grains.volume_fraction: with seed 1 (1 more seed has such a warning) the grains already overlap";
     assert_eq!(seeds.stderr.matches(key).count(), 1, "{}", seeds.stderr);
 }
 
