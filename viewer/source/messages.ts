@@ -275,17 +275,11 @@ export type Column = {
   values: Array<number | string | boolean | null>,
 };
 
-/** Colour of the wall in sRGB. */
+// What crates/run/src/scene/drawn.rs says of each.
 export const STONE = [207, 202, 193];
-/** Part of their size at which grains are drawn among the forces between them. */
 export const SHRUNK = 0.32;
-/** Radius of the rod that stands for the weakest force, and what the strongest adds to it [d]. */
 export const ROD = [0.02, 0.11];
-/** Part of the contacts whose force lies within the colours. */
 export const FORCES_COVERED = 0.97;
-/** Part of the grains whose speed or pressure lies within the colours. */
 export const GRAINS_COVERED = 0.98;
-/** Contacts that most grains have fewer than, where the colours end. */
 export const MOST_CONTACTS = 12;
-/** Colours of forces from weak to strong, in equal steps, in sRGB. */
 export const FORCE: [number, number, number][] = [[70, 60, 110], [150, 50, 120], [225, 80, 60], [255, 170, 50], [255, 250, 190]];

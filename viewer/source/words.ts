@@ -10,10 +10,11 @@ export function withError(value: number, error: number): string {
   const size = Math.max(Math.abs(value), error);
   const power = size >= 1e6 || size < 1e-3 ? Math.floor(Math.log10(size)) : 0;
   const place = last - power;
+  // Digits before the point are rounded too; a zero has no sign.
+  const unit = 10 ** Math.max(0, place);
   const digits = (number: number) => {
-    const unit = 10 ** Math.max(0, place);
-    const text = (unit * Math.round(number / 10 ** power / unit || 0) || 0);
-    return place > 0 ? String(text) : (number / 10 ** power).toFixed(-place).replace(/^-(0\.?0*)$/, "$1");
+    const units = (number / 10 ** power / unit).toFixed(Math.max(0, -place));
+    return (place > 0 ? String(unit * Number(units)) : units).replace(/^-(0\.?0*)$/, "$1");
   };
   const pair = `${digits(value)}\u00a0±\u00a0${digits(error)}`;
   return (power ? `(${pair})·${powerOfTen(power)}` : pair).replaceAll("-", "−");

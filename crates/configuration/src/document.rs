@@ -129,11 +129,8 @@ fn read_override(source: &Arc<Source>) -> Result<Table, String> {
 /// Letters, digits and `_-./`, beginning with a letter, `/`, `./` or `../`: a name, of a file too, that needs no quotes on the
 /// command line.
 fn is_bare_word(word: &str) -> bool {
-    let begins = |with: &str| word.starts_with(with);
-    (begins("/")
-        || begins("./")
-        || begins("../")
-        || word.starts_with(|it: char| it.is_ascii_alphabetic()))
+    let is_path = ["/", "./", "../"].iter().any(|it| word.starts_with(it));
+    (is_path || word.starts_with(|first: char| first.is_ascii_alphabetic()))
         && word
             .chars()
             .all(|letter| letter.is_ascii_alphanumeric() || "_-./".contains(letter))
@@ -167,15 +164,15 @@ fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
         DeValue::String(text) => Node::Text(text.to_string()),
         DeValue::Integer(integer) => {
             let (digits, radix) = (integer.as_str(), integer.radix());
-            match i64::from_str_radix(digits, radix) {
-                Ok(integer) => Node::Integer(integer),
-                // It may still be a real number.
-                Err(_) if radix == 10 => Node::Float(digits.parse().unwrap_or(f64::INFINITY)),
-                Err(_) => u128::from_str_radix(digits, radix)
-                    .map_or(Node::Float(f64::INFINITY), |large| {
-                        Node::Float(large as f64)
-                    }),
-            }
+            // What is beyond an integer may still be a real number.
+            let real = || match radix {
+                10 => digits.parse().ok(),
+                _ => u128::from_str_radix(digits, radix).ok().map(|it| it as f64),
+            };
+            i64::from_str_radix(digits, radix).map_or_else(
+                |_| Node::Float(real().unwrap_or(f64::INFINITY)),
+                Node::Integer,
+            )
         }
         DeValue::Float(float) => match float.as_str().parse::<f64>() {
             // A literal too large for f64 reads as infinite; no key takes either.

@@ -281,12 +281,8 @@ impl<'a> Part<'a> {
                     edge.map(|radius| side * radius).collect()
                 };
                 let (centres, surface) = (at(0.0), at(thickness));
-                let (low, high) = match side > 0.0 {
-                    true => (&surface, &centres),
-                    false => (&centres, &surface),
-                };
                 panel = panel
-                    .with(Band::new("", along, low, high).tint(Tint::Grey))
+                    .with(Band::new("", along, &surface, &centres).tint(Tint::Grey))
                     .with(Line::new("", along, &centres).tint(Tint::Grey));
             }
         }

@@ -80,54 +80,25 @@ fn file() -> String {
     format!("{HEAD}\n{}\n{}", types.join("\n"), constants())
 }
 
-/// What pictures and page draw alike.
+/// The colours and sizes that pictures and page share.
 fn constants() -> String {
-    let constants = [
+    let lines = [
+        ("STONE", format!("{:?}", drawn::STONE)),
+        ("SHRUNK", drawn::SHRUNK.to_string()),
+        ("ROD", format!("{:?}", drawn::ROD)),
+        ("FORCES_COVERED", drawn::FORCES_COVERED.to_string()),
+        ("GRAINS_COVERED", drawn::GRAINS_COVERED.to_string()),
+        ("MOST_CONTACTS", drawn::MOST_CONTACTS.to_string()),
         (
-            "Colour of the wall in sRGB.",
-            "STONE",
-            format!("{:?}", drawn::STONE),
-        ),
-        (
-            "Part of their size at which grains are drawn among the forces between them.",
-            "SHRUNK",
-            drawn::SHRUNK.to_string(),
-        ),
-        (
-            "Radius of the rod that stands for the weakest force, and what the strongest adds to it [d].",
-            "ROD",
-            format!("{:?}", drawn::ROD),
-        ),
-        (
-            "Part of the contacts whose force lies within the colours.",
-            "FORCES_COVERED",
-            drawn::FORCES_COVERED.to_string(),
-        ),
-        (
-            "Part of the grains whose speed or pressure lies within the colours.",
-            "GRAINS_COVERED",
-            drawn::GRAINS_COVERED.to_string(),
-        ),
-        (
-            "Contacts that most grains have fewer than, where the colours end.",
-            "MOST_CONTACTS",
-            drawn::MOST_CONTACTS.to_string(),
-        ),
-        (
-            "Colours of forces from weak to strong, in equal steps, in sRGB.",
-            "FORCE",
+            "FORCE: [number, number, number][]",
             format!("{:?}", drawn::force_colours()),
         ),
-    ];
-    let lines = constants.map(|(meaning, name, value)| {
-        let kind = if value.starts_with("[[") {
-            ": [number, number, number][]"
-        } else {
-            ""
-        };
-        format!("/** {meaning} */\nexport const {name}{kind} = {value};\n")
-    });
-    lines.concat()
+    ]
+    .map(|(name, value)| format!("export const {name} = {value};\n"));
+    format!(
+        "// What crates/run/src/scene/drawn.rs says of each.\n{}",
+        lines.concat()
+    )
 }
 
 #[test]

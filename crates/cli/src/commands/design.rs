@@ -6,7 +6,9 @@ use std::process::ExitCode;
 
 use clap::Args;
 use peristalsis_configuration::{Configuration, SourceFile};
-use peristalsis_reproduce::design::{Design, configuration_text, is_design, page, schema};
+use peristalsis_reproduce::design::{
+    DISTANCES, Design, NEAR, configuration_text, is_design, page, schema,
+};
 use peristalsis_run::estimate;
 
 use crate::arguments::ConfigurationArguments;
@@ -130,10 +132,7 @@ fn in_words(design: &Design) -> String {
         lines.push(line.trim_end().to_owned());
     }
     if design.groups.iter().any(|group| group.place() == "near") {
-        lines.push(
-            "near: outside the range, but by less than the difference up to which two tubes count as alike; treated as inside"
-                .to_owned(),
-        );
+        lines.push(NEAR.to_owned());
     }
     lines.push(String::new());
     lines.push(format!("regime            {}", design.regime));
@@ -155,7 +154,7 @@ fn in_words(design: &Design) -> String {
         }
         let [least, most] = expected.range;
         line += &format!(
-            "; {} published points between {least:.2} and {most:.2}, the nearest at a distance of {:.1} (0 is the same tube, 1 just alike): {}",
+            "; {} published points between {least:.2} and {most:.2}, the nearest at a distance of {:.1} ({DISTANCES}): {}",
             expected.points,
             expected.distance,
             expected.studies.join(", ")

@@ -54,7 +54,12 @@ fn nested_relative_folders_are_made_and_filled() {
         "temperature, Tg/mc2",
         "(d)",
     ];
-    assert_labels(&place.path("a/b/c/profile.svg"), &profile);
+    let drawing = place.path("a/b/c/profile.svg");
+    assert_labels(&drawing, &profile);
+    // Below each of the two columns.
+    let position = "aria-label=\"position in the wave frame, (z − ct)/λ\"";
+    let drawing = std::fs::read_to_string(drawing).unwrap();
+    assert_eq!(drawing.matches(position).count(), 2);
 }
 
 /// A drawing bears each of these texts once.

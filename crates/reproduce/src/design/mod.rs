@@ -27,6 +27,12 @@ use crate::thresholds::{FAST, SLOW, SPLIT, UNJAMMED};
 /// Grains smaller than this \[m\] cohere and feel the air: Geldart's groups A and C (Powder Technol. 7, 285 (1973)).
 const SMALLEST_GRAIN: f64 = 1e-4;
 
+/// What it means that a group is near the published range.
+pub const NEAR: &str = "near: outside the range, but by less than the difference up to which two tubes count as alike; \
+                        treated as inside";
+/// What distances from published points mean.
+pub const DISTANCES: &str = "0 is the same tube, 1 just alike";
+
 /// A group of a design beside those of the published runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Compared {

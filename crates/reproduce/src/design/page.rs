@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{Design, rounded};
+use super::{DISTANCES, Design, NEAR, rounded};
 use crate::report::STYLE;
 
 /// The page: groups, regime, expectation, what is outside the data, cost; `cost` are the words of the command line on what
@@ -34,7 +34,7 @@ pub fn page(design: &Design, name: &str, cost: &str) -> String {
                                 }
                                 " (" (flow.expectation.points) " published points between "
                                 (rounded(flow.expectation.range[0])) " and " (rounded(flow.expectation.range[1]))
-                                ", the nearest at a distance of " (rounded(flow.expectation.distance)) " (0 is the same tube, 1 just alike): "
+                                ", the nearest at a distance of " (rounded(flow.expectation.distance)) " (" (DISTANCES) "): "
                                 (flow.expectation.studies.join(", ")) ")."
                             }
                         }
@@ -58,10 +58,7 @@ pub fn page(design: &Design, name: &str, cost: &str) -> String {
                             }
                         }
                         @if design.groups.iter().any(|group| group.place() == "near") {
-                            p {
-                                "near: outside the range, but by less than the difference up to which two tubes count as alike; "
-                                "treated as inside."
-                            }
+                            p { (NEAR) "." }
                         }
                         @if !design.outside.is_empty() {
                             h2 { "Outside the published runs" }

@@ -58,19 +58,28 @@ impl Store {
                         changed.push((identity, done(&row, stamp)));
                     }
                 }
-                Verdict::Damaged(reason) => {
-                    self.quarantine_run(identity, &reason)?;
+                lost => {
+                    let (reason, entry) = self.let_go(identity, lost)?;
                     news.push(not_whole(identity, &reason));
-                    changed.push((identity, Entry::new(State::Quarantined, Some(reason))));
-                }
-                unsealed => {
-                    news.push(not_whole(identity, GONE));
-                    changed.push((identity, unsealed.entry()));
+                    changed.push((identity, entry));
                 }
             }
         }
         index.note(changed.iter().map(|(identity, entry)| (*identity, entry)))?;
         Ok(news)
+    }
+
+    /// What is wrong with a run that was finished and is not as it was sealed, and its entry from now on; files that differ from
+    /// the seal are moved aside.
+    pub(super) fn let_go(&self, identity: Identity, lost: Verdict) -> Result<(String, Entry)> {
+        let reason = match &lost {
+            Verdict::Damaged(reason) => {
+                self.quarantine_run(identity, reason)?;
+                reason.clone()
+            }
+            _ => GONE.to_owned(),
+        };
+        Ok((reason, lost.entry()))
     }
 
     pub(super) fn fill(&self, index: &mut Index) -> Result<Verification> {

@@ -9,7 +9,7 @@ use peristalsis_run::files;
 use serde_json::Value;
 
 use super::run_files::{TIMES, TIMING};
-use super::{GONE, Index, Store, Survey, Verdict};
+use super::{Index, Store, Survey, Verdict};
 use crate::error::{Result, StudyError};
 use crate::identity::{Identity, PHYSICS_VERSION};
 use crate::plan::{Plan, PlannedRun, Setting, SettingValue};
@@ -179,15 +179,10 @@ impl Store {
                     row: *row,
                     imported: false,
                 }),
-                Verdict::Damaged(reason) => {
-                    self.quarantine_run(run.identity, &reason)?;
-                    let entry = Entry::new(State::Quarantined, Some(reason.clone()));
+                lost => {
+                    let (reason, entry) = self.let_go(run.identity, lost)?;
                     index.note([(run.identity, &entry)])?;
                     quarantined.push((run.identity, reason));
-                }
-                unsealed => {
-                    index.note([(run.identity, &unsealed.entry())])?;
-                    quarantined.push((run.identity, GONE.to_owned()));
                 }
             }
         }

@@ -59,14 +59,11 @@ const REASON: &str = "reason.txt";
 /// Of a run that was finished, that it has no seal.
 const GONE: &str = "its seal, done.json, is gone";
 
-/// Of a run that was finished and whose files are not those of its seal: what becomes of them, and of the run.
+/// Of a run that was finished and is not as it was sealed: what becomes of it.
 pub fn not_whole(identity: Identity, reason: &str) -> String {
-    match reason {
-        GONE => format!("run {identity} was finished, and {GONE}: to be computed again"),
-        _ => format!(
-            "the files of run {identity} differ from its seal ({reason}): moved aside, to be computed again"
-        ),
-    }
+    format!(
+        "run {identity} is not as it was sealed ({reason}): to be computed again; files that differ are moved aside"
+    )
 }
 
 /// How long an owner of whom nothing else is known may be silent before its lease is void.
