@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::lanes::{LANES, LaneVector, Lanes};
-use super::machine::Machine;
+use super::machine::{Line, Machine};
 
 /// Vectors in space, a column for each component.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -97,6 +97,67 @@ impl Columns {
     #[inline(always)]
     pub(crate) fn as_mut(&mut self) -> ColumnsMut<'_> {
         self.first_mut(self.x.len())
+    }
+}
+
+/// The same, with room up to the end of a line of the cache; each column begins on one.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LineColumns {
+    x: Vec<Line>,
+    y: Vec<Line>,
+    z: Vec<Line>,
+}
+
+impl LineColumns {
+    /// Makes room for so many vectors, all zero.
+    pub(crate) fn clear(&mut self, length: usize) {
+        for column in [&mut self.x, &mut self.y, &mut self.z] {
+            column.clear();
+            column.resize(length.div_ceil(LANES), Line::default());
+        }
+    }
+
+    pub(crate) fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    #[inline(always)]
+    pub(crate) fn each(&mut self) -> [&mut [f64]; 3] {
+        [
+            Line::numbers_mut(&mut self.x),
+            Line::numbers_mut(&mut self.y),
+            Line::numbers_mut(&mut self.z),
+        ]
+    }
+
+    #[inline(always)]
+    pub(crate) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
+        self.first(self.x.len() * LANES).load(start)
+    }
+
+    #[inline(always)]
+    pub(crate) fn store<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
+        self.first_mut(self.x.len() * LANES).store(start, vector);
+    }
+
+    /// The first so many vectors.
+    #[inline(always)]
+    pub(crate) fn first(&self, number: usize) -> ColumnsRef<'_> {
+        ColumnsRef {
+            x: &Line::numbers(&self.x)[..number],
+            y: &Line::numbers(&self.y)[..number],
+            z: &Line::numbers(&self.z)[..number],
+        }
+    }
+
+    /// The same, to be written to.
+    #[inline(always)]
+    pub(crate) fn first_mut(&mut self, number: usize) -> ColumnsMut<'_> {
+        ColumnsMut {
+            x: &mut Line::numbers_mut(&mut self.x)[..number],
+            y: &mut Line::numbers_mut(&mut self.y)[..number],
+            z: &mut Line::numbers_mut(&mut self.z)[..number],
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use peristalsis_physics::real::{Real, Vector};
 use super::record::{self, Record};
 use super::spheres::Moving;
 use super::terms::{Book, WallTerms};
-use crate::fast::columns::Columns;
+use crate::fast::columns::LineColumns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
 use crate::fast::sums::Sums;
@@ -16,15 +16,18 @@ use crate::fast::threads::THREADS_EXIST;
 use crate::ledger::Tally;
 use crate::wall::{DriveAngle, ElasticWall, NetForce};
 
-/// Vectors of the spheres of a ring: sphere p at p + 1; before and after them stand copies of the last and first, which are
-/// their neighbours.
-impl Columns {
+/// Where the first sphere of a ring stands: at the start of a line of the cache, which loads and stores then do not cross.
+const FIRST: usize = LANES;
+
+/// Vectors of the spheres of a ring: sphere p at `FIRST` + p; before and after them stand copies of the last and first, which
+/// are their neighbours.
+impl LineColumns {
     /// Copies the ends round.
     #[inline(always)]
     fn close(&mut self, count: usize) {
         for component in self.each() {
-            component[0] = component[count];
-            component[count + 1] = component[1];
+            component[FIRST - 1] = component[FIRST + count - 1];
+            component[FIRST + count] = component[FIRST];
         }
     }
 }
@@ -32,8 +35,8 @@ impl Columns {
 /// The spheres of a ring.
 #[derive(Clone, Debug, Default)]
 struct Ring {
-    place: Columns,
-    velocity: Columns,
+    place: LineColumns,
+    velocity: LineColumns,
     /// Turns round the tube, sphere p at p.
     turns: Vec<f64>,
 }
@@ -58,10 +61,10 @@ impl Ring {
         let mut velocities = self.velocity.first_mut(room);
         for start in (0..spheres).step_by(LANES) {
             let (vectors, turns) = record::into_lanes::<M>(eight_from::<M>(&position[start..]));
-            places.store(start + 1, vectors);
+            places.store(FIRST + start, vectors);
             turns.store(&mut self.turns, start);
             let (vectors, _) = record::into_lanes::<M>(eight_from::<M>(&velocity[start..]));
-            velocities.store(start + 1, vectors);
+            velocities.store(FIRST + start, vectors);
         }
         self.place.close(spheres);
         self.velocity.close(spheres);
@@ -91,19 +94,19 @@ fn eight_from<M: Machine>(records: &[Record]) -> [Quad<M>; LANES] {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
     /// Forces of the bonds: along the ring, and to the two spheres above.
-    along: Columns,
-    first: Columns,
-    second: Columns,
+    along: LineColumns,
+    first: LineColumns,
+    second: LineColumns,
     /// Force of the bonds from the ring below.
-    carried: Columns,
-    force: Columns,
+    carried: LineColumns,
+    force: LineColumns,
     cos: [Vec<f64>; 2],
     sin: [Vec<f64>; 2],
 }
 
 /// Length of the columns for a ring of so many spheres.
 fn room_for(spheres: usize) -> usize {
-    spheres.next_multiple_of(LANES) + 2 * LANES
+    FIRST + spheres.next_multiple_of(LANES) + LANES
 }
 
 impl Rows {
@@ -212,7 +215,7 @@ impl WallForces<'_> {
         } = self.spheres;
         let lattice = wall.lattice();
         let (per_ring, all) = (lattice.spheres_per_ring as usize, lattice.rings() as usize);
-        if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.force.x.is_empty() {
+        if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.force.is_empty() {
             here.clear(room_for(per_ring));
             above.clear(room_for(per_ring));
             rows.resize(wall);
@@ -271,13 +274,13 @@ impl WallForces<'_> {
 /// ring go on.
 #[inline(always)]
 fn add_eight<M: Machine>(
-    more: &Columns,
+    more: &LineColumns,
     start: usize,
     forces: &mut [Record],
     velocities: &[Record],
     [ring_force, ring_velocity]: &mut [Quad<M>; 2],
 ) {
-    let more = record::from_lanes(more.load::<M>(start + 1), Lanes::splat(0.0));
+    let more = record::from_lanes(more.load::<M>(FIRST + start), Lanes::splat(0.0));
     for ((force, velocity), more) in forces.iter_mut().zip(velocities).zip(more) {
         let whole = force.quad() + more;
         *force = whole.record();
@@ -294,8 +297,9 @@ fn carry<M: Machine>(rows: &mut Rows, parity: usize, per_ring: usize) {
     // The ring below has the other parity; its place p is bound to the places p - 1 + o and p + o here, o its parity.
     let odd = 1 - parity;
     for start in (0..per_ring).step_by(LANES) {
-        let on_these = rows.first.load::<M>(start + 2 - odd) + rows.second.load(start + 1 - odd);
-        rows.carried.store(start + 1, -on_these);
+        let on_these =
+            rows.first.load::<M>(FIRST + start + 1 - odd) + rows.second.load(FIRST + start - odd);
+        rows.carried.store(FIRST + start, -on_these);
     }
 }
 
@@ -362,15 +366,18 @@ fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
     let mut on_second = rows.second.first_mut(room);
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);
-        let here = (place.load(start + 1), velocity.load(start + 1));
-        let next = (place.load(start + 2), velocity.load(start + 2));
+        let here = (place.load(FIRST + start), velocity.load(FIRST + start));
+        let next = (
+            place.load(FIRST + start + 1),
+            velocity.load(FIRST + start + 1),
+        );
         let first = (
-            place_above.load(start + parity),
-            velocity_above.load(start + parity),
+            place_above.load(FIRST + start + parity - 1),
+            velocity_above.load(FIRST + start + parity - 1),
         );
         let second = (
-            place_above.load(start + parity + 1),
-            velocity_above.load(start + parity + 1),
+            place_above.load(FIRST + start + parity),
+            velocity_above.load(FIRST + start + parity),
         );
         let mut terms = [[Lanes::splat(0.0); 2]; 3];
         let along = bond.force(here, next, valid, &mut terms[0]);
@@ -379,9 +386,9 @@ fn bonds<M: Machine, B: Book<M>, const ALL: bool>(
         if ALL {
             book.bonds(terms);
         }
-        on_along.store(start + 1, along);
-        on_first.store(start + 1, first);
-        on_second.store(start + 1, second);
+        on_along.store(FIRST + start, along);
+        on_first.store(FIRST + start, first);
+        on_second.store(FIRST + start, second);
     }
     rows.along.close(per_ring);
 }
@@ -424,8 +431,8 @@ fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
     let mut force = rows.force.first_mut(room);
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);
-        let place = places.load(start + 1);
-        let velocity = velocities.load(start + 1);
+        let place = places.load(FIRST + start);
+        let velocity = velocities.load(FIRST + start);
         let (cos, sin) = (Lanes::load(cos, start), Lanes::load(sin, start));
         let (x, y) = (place.x - radius * cos, place.y - radius * sin);
         let away_radial = x * cos + y * sin;
@@ -472,9 +479,9 @@ fn tethers_and_drive<M: Machine, B: Book<M>, const ALL: bool>(
             true => tethers_and_drive - velocity * drag,
             false => tethers_and_drive,
         };
-        let springs = (along.load(start + 1) - along.load(start))
-            + (first.load(start + 1) + second.load(start + 1))
-            + carried.load(start + 1);
-        force.store(start + 1, springs + tethers_and_drive);
+        let springs = (along.load(FIRST + start) - along.load(FIRST + start - 1))
+            + (first.load(FIRST + start) + second.load(FIRST + start))
+            + carried.load(FIRST + start);
+        force.store(FIRST + start, springs + tethers_and_drive);
     }
 }

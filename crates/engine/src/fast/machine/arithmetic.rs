@@ -56,6 +56,11 @@ pub(crate) trait Machine: Arithmetic<LANES> + Default + PartialEq {
 
     fn div(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
     fn sqrt(a: Self::Numbers) -> Self::Numbers;
+    /// The same root, for kernels that keep the processor's divider busy: it takes roots too, one thing at a time.
+    #[inline(always)]
+    fn sqrt_beside_divisions(a: Self::Numbers) -> Self::Numbers {
+        Self::sqrt(a)
+    }
     /// |a|
     fn abs(a: Self::Numbers) -> Self::Numbers;
     /// 1/sqrt(a) computed in single precision.

@@ -5,7 +5,7 @@ use core::arch::x86_64::*;
 use super::arithmetic::{Arithmetic, LANES, Machine};
 use super::avx2::{Avx2, Four};
 
-/// AVX-512 (F, VL, DQ, BW).
+/// AVX-512 (F, VL, DQ, BW) and fused multiply-add, which all of these processors have.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Avx512;
 
@@ -46,6 +46,33 @@ impl Machine for Avx512 {
     #[inline(always)]
     fn sqrt(a: __m512d) -> __m512d {
         unsafe { _mm512_sqrt_pd(a) }
+    }
+
+    /// Multiplications from an estimate of 14 bits on, rounded like the instruction, in a third of its time.
+    #[inline(always)]
+    fn sqrt_beside_divisions(a: __m512d) -> __m512d {
+        unsafe {
+            // Far from where a product would overflow, or lose bits to underflow.
+            let above = _mm512_cmp_pd_mask::<_CMP_GT_OQ>(a, _mm512_set1_pd(1e-120));
+            let within = _mm512_mask_cmp_pd_mask::<_CMP_LT_OQ>(above, a, _mm512_set1_pd(1e120));
+            if within != u8::MAX {
+                return rare_sqrt(a);
+            }
+            let half = _mm512_set1_pd(0.5);
+            let estimate = _mm512_rsqrt14_pd(a);
+            // sqrt(a) and 1/(2 sqrt(a)), whose product is 1/2. Each step squares what is missing.
+            let mut root = _mm512_mul_pd(a, estimate);
+            let mut inverse = _mm512_mul_pd(half, estimate);
+            for _ in 0..2 {
+                let missing = _mm512_fnmadd_pd(root, inverse, half);
+                root = _mm512_fmadd_pd(root, missing, root);
+                inverse = _mm512_fmadd_pd(inverse, missing, inverse);
+            }
+            // The root is off by a unit in its last place at most. What it leaves of `a` is exact, so that the sum, before
+            // it is rounded, is off by less than 2^-104 of itself.
+            let left = _mm512_fnmadd_pd(root, root, a);
+            _mm512_fmadd_pd(left, inverse, root)
+        }
     }
 
     #[inline(always)]
@@ -139,6 +166,13 @@ impl Machine for Avx512 {
             _mm256_storeu_si256(to.as_mut_ptr().cast(), packed);
         }
     }
+}
+
+/// For zeros and numbers very far from 1.
+#[cold]
+#[target_feature(enable = "avx512f")]
+fn rare_sqrt(a: __m512d) -> __m512d {
+    _mm512_sqrt_pd(a)
 }
 
 #[inline(always)]

@@ -110,6 +110,7 @@ impl Instructions {
                     && is_x86_feature_detected!("avx512vl")
                     && is_x86_feature_detected!("avx512dq")
                     && is_x86_feature_detected!("avx512bw")
+                    && is_x86_feature_detected!("fma")
             }
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
@@ -141,7 +142,7 @@ impl Instructions {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,popcnt")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,fma,popcnt")]
 fn with_avx512<W: Work>(work: W) -> W::Answer {
     work.run::<Avx512>()
 }
@@ -150,6 +151,27 @@ fn with_avx512<W: Work>(work: W) -> W::Answer {
 #[target_feature(enable = "avx2,popcnt")]
 fn with_avx2<W: Work>(work: W) -> W::Answer {
     work.run::<Avx2>()
+}
+
+/// Eight numbers on a line of the cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub(crate) struct Line(pub(crate) [f64; LANES]);
+
+impl Line {
+    /// The numbers of lines, one after the other.
+    #[inline(always)]
+    pub(crate) fn numbers(lines: &[Self]) -> &[f64] {
+        // SAFETY: a line is eight numbers and nothing else.
+        unsafe { core::slice::from_raw_parts(lines.as_ptr().cast(), lines.len() * LANES) }
+    }
+
+    /// The same, to be written to.
+    #[inline(always)]
+    pub(crate) fn numbers_mut(lines: &mut [Self]) -> &mut [f64] {
+        // SAFETY: as above.
+        unsafe { core::slice::from_raw_parts_mut(lines.as_mut_ptr().cast(), lines.len() * LANES) }
+    }
 }
 
 /// Eight items of a slice. All numbers are looked at before one branch, instead of one by one.

@@ -2,8 +2,8 @@
 
 use peristalsis_physics::real::Real;
 
-use crate::fast::lanes::{LANES, Lanes, Mask};
-use crate::fast::machine::Machine;
+use crate::fast::lanes::{Lanes, Mask};
+use crate::fast::machine::{Line, Machine};
 
 /// Squared distance \[d^2\] below which two centres count as one, and have no normal.
 const COINCIDENT: f64 = 1e-30;
@@ -11,14 +11,9 @@ const COINCIDENT: f64 = 1e-30;
 /// Squared distances \[d^2\].
 #[derive(Debug, Default)]
 pub(super) struct Distances {
-    eights: Vec<Eight>,
+    eights: Vec<Line>,
     number: usize,
 }
-
-/// Eight numbers on a line of the cache.
-#[derive(Clone, Copy, Debug, Default)]
-#[repr(align(64))]
-struct Eight([f64; LANES]);
 
 /// Eight pairs, some of which touch.
 pub(super) struct Near<M: Machine> {
@@ -34,7 +29,7 @@ impl Distances {
     pub(super) fn clear(&mut self, room: usize) {
         self.number = 0;
         if self.eights.len() < room {
-            self.eights.resize(room, Eight::default());
+            self.eights.resize(room, Line::default());
         }
     }
 
@@ -46,7 +41,7 @@ impl Distances {
     /// Writes down squared distances, `ahead` eights behind those that are kept.
     #[inline(always)]
     pub(super) fn note<M: Machine>(&mut self, ahead: usize, squared: Lanes<M>) {
-        let Eight(numbers) = &mut self.eights[self.number + ahead];
+        let Line(numbers) = &mut self.eights[self.number + ahead];
         squared.store(numbers, 0);
     }
 

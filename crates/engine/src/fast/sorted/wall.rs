@@ -140,7 +140,7 @@ impl WallTable {
         }
 
         // No sphere of a ring is nearer than the ring itself.
-        let from_axis = from_axis_squared.sqrt();
+        let from_axis = from_axis_squared.lone_sqrt();
         let reach_squared = Lanes::splat(self.reach * self.reach);
         let mut ring = self.first_ring(z);
         let mut before = 0.0;
