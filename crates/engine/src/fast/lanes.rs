@@ -1,6 +1,6 @@
 //! Eight numbers, truth values or vectors side by side, for the kernels to compute with.
 //!
-//! Nothing here fuses a multiplication with an addition: not every machine could, and all give the same bits.
+//! No answer tells whether a machine could fuse a multiplication with an addition: all give the same bits.
 
 use core::fmt;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
