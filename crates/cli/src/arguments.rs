@@ -116,7 +116,7 @@ pub(crate) struct RunArguments {
     pub(crate) instructions: Option<Instructions>,
     /// Go on with a run, to the same bits as if it had never stopped. DIR is its folder. FILE is a state, such as Python's
     /// `Simulation.save` writes: it goes on in a new folder.
-    #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["file", "preset", "overrides", "seeds"])]
+    #[arg(long, value_name = "DIR|FILE", conflicts_with = "seeds")]
     pub(crate) resume: Option<PathBuf>,
     /// Run once with each of these seeds, such as 1..10 or 1,2,5, and show mean and scatter. The runs are in the folders
     /// DIR/seed-K; --resume DIR goes on with all of them.

@@ -58,9 +58,9 @@ pub(crate) fn name_and_text(
     let Some(path) = &arguments.file else {
         return Ok(None);
     };
-    let text = text_of(path).map_err(|error| match is_saved_state(path) {
-        true => of_saved_state(path),
-        false => no_file(path, error, &arguments.overrides),
+    let text = text_of(path).map_err(|error| {
+        let of_a_run = of_a_run(path, "a configuration");
+        of_a_run.unwrap_or_else(|| no_file(path, error, &arguments.overrides))
     })?;
     let name = match is_standard_input(path) {
         true => "standard input".to_owned(),
@@ -69,16 +69,30 @@ pub(crate) fn name_and_text(
     Ok(Some((name, text)))
 }
 
-/// Whether a file is the saved state of a run.
-fn is_saved_state(path: &Path) -> bool {
-    std::fs::read(path).is_ok_and(|bytes| checkpoint::physics_hash(&bytes).is_ok())
+/// That the folder of a run, or its saved state, is not what was asked for, and how to go on from it.
+fn of_a_run(path: &Path, asked_for: &str) -> Option<Failure> {
+    let refused = |is: &str, help| {
+        let message = format!("{} is {is} of a run, not {asked_for}", path.display());
+        Some(Failure::usage(message, help))
+    };
+    let configuration = path.join(files::CONFIGURATION);
+    if configuration.is_file() {
+        let [folder, configuration] = [path, &configuration].map(shell_word);
+        let help = format!(
+            "go on with it: peristalsis run --resume {folder}; or begin one like it: peristalsis run {configuration}"
+        );
+        return refused("the folder", help);
+    }
+    let bytes = std::fs::read(path).ok()?;
+    checkpoint::physics_hash(&bytes).ok()?;
+    refused("the saved state", how_to_go_on(path))
 }
 
-/// That a saved state is no configuration, and how to go on from it.
-fn of_saved_state(state: &Path) -> Failure {
+/// How to go on from a saved state.
+fn how_to_go_on(state: &Path) -> String {
     let folder = state.parent();
     let folder = folder.filter(|it| it.join(files::CONFIGURATION).exists());
-    let help = match folder {
+    match folder {
         Some(folder) if !folder.as_os_str().is_empty() => {
             let folder = shell_word(folder);
             format!(
@@ -89,9 +103,7 @@ fn of_saved_state(state: &Path) -> Failure {
             "go on from it: peristalsis run --resume {}",
             shell_word(state)
         ),
-    };
-    let is = "is the saved state of a run, not a configuration";
-    Failure::usage(format!("{} {is}", state.display()), help)
+    }
 }
 
 /// That a file cannot be read, which may be the name of a preset.
@@ -138,6 +150,9 @@ pub(crate) fn study(path: &Path) -> Result<Specification, Failure> {
         !is_a_study(text) && text.lines().any(|line| tables.contains(&line.trim()))
     };
     Specification::read(path).map_err(|error| {
+        if let Some(of_a_run) = of_a_run(path, "the file of a study") {
+            return of_a_run;
+        }
         if !std::fs::read_to_string(path).is_ok_and(|text| of_one_run(&text)) {
             return error.into();
         }

@@ -222,6 +222,22 @@ fn what_cannot_be_resumed() {
 
     let state = ["is the saved state", "peristalsis run --resume whole"];
     place.refuses("check whole/state.checkpoint", &state);
+    place.refuses("study run whole/state.checkpoint", &state);
+    let folder = [
+        "the folder of a run",
+        "peristalsis run --resume whole",
+        "whole/config.toml",
+    ];
+    place.refuses("check whole", &folder);
+    place.refuses("study run whole", &folder);
+    for other in ["SMALL", "--preset frictional", "drive.width=2.7"] {
+        let physics = [
+            "goes on with the physics",
+            "--periods",
+            "run whole/config.toml",
+        ];
+        place.refuses(&format!("run --resume whole {other}"), &physics);
+    }
     std::fs::rename(
         place.path("whole/state.checkpoint"),
         place.path("alone.checkpoint"),

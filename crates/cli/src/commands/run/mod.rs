@@ -12,7 +12,7 @@ use peristalsis_configuration::{Configuration, InitialState, SourceFile, Sources
 use peristalsis_engine::{Instructions, processors};
 use peristalsis_formats::shell_word;
 use peristalsis_run::{
-    Run, RunError, RunFolder, Trajectory, TrajectoryPlan, read_state, scheduled_wavelengths,
+    Run, RunError, RunFolder, Trajectory, TrajectoryPlan, files, read_state, scheduled_wavelengths,
     warnings,
 };
 
@@ -34,6 +34,7 @@ pub(crate) const RUNS: &str = "runs";
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     check_instructions(arguments)?;
     check_frames(arguments)?;
+    check_resume(arguments)?;
     if let Some(replicates) = replicates::replicates(arguments)? {
         return replicates::run(arguments, replicates);
     }
@@ -125,6 +126,28 @@ fn check_frames(arguments: &RunArguments) -> Result<(), Failure> {
         }
         _ => request(&arguments.frames).map(drop),
     }
+}
+
+/// A run goes on with the physics that it began with.
+fn check_resume(arguments: &RunArguments) -> Result<(), Failure> {
+    let asked = &arguments.configuration;
+    let Some(folder) = &arguments.resume else {
+        return Ok(());
+    };
+    if asked.file.is_none() && asked.preset.is_none() && asked.overrides.is_empty() {
+        return Ok(());
+    }
+    let configuration = folder.join(files::CONFIGURATION);
+    let help = "to another length: --periods N or --duration T";
+    let help = match configuration.is_file() {
+        true => format!(
+            "{help}; to begin another run: peristalsis run {} --set KEY=VALUE",
+            shell_word(&configuration)
+        ),
+        false => help.to_owned(),
+    };
+    let message = "a run goes on with the physics that it began with: --resume takes no FILE, --preset or --set";
+    Err(Failure::usage(message, help))
 }
 
 /// Takes the instructions and threads asked for, where so many processors are free.
