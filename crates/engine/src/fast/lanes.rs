@@ -1,6 +1,6 @@
 //! Eight numbers, truth values or vectors side by side, for the kernels to compute with.
 //!
-//! No answer tells whether a machine could fuse a multiplication with an addition: all give the same bits.
+//! All machines give the same bits: an addition is fused with a multiplication only where the result is rounded all the same.
 
 use core::fmt;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};

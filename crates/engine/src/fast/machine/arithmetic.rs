@@ -56,7 +56,7 @@ pub(crate) trait Machine: Arithmetic<LANES> + Default + PartialEq {
 
     fn div(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
     fn sqrt(a: Self::Numbers) -> Self::Numbers;
-    /// The same root, for kernels that keep the processor's divider busy: it takes roots too, one thing at a time.
+    /// The same root, for code that divides too: a processor has one unit for both, which does one at a time.
     #[inline(always)]
     fn sqrt_beside_divisions(a: Self::Numbers) -> Self::Numbers {
         Self::sqrt(a)
