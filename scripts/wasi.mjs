@@ -4,5 +4,6 @@ import { WASI } from "node:wasi";
 
 const [program] = process.argv.slice(2);
 const wasi = new WASI({ version: "preview1", args: process.argv.slice(2), env: process.env, preopens: { "/": "/" } });
-const { instance } = await WebAssembly.instantiate(readFileSync(program), wasi.getImportObject());
+const module = new WebAssembly.Module(readFileSync(program));
+const instance = new WebAssembly.Instance(module, wasi.getImportObject());
 process.exitCode = wasi.start(instance);

@@ -25,7 +25,8 @@ const SLACK: f64 = 1e-3;
 pub struct ScatterLawFit {
     /// Critical width w_c; intervals normal in ln(w_c - largest width that saw a transition).
     pub critical_width: Uncertain,
-    /// alpha of tau ~ (w_c - w)^-alpha.
+    /// alpha of tau ~ (w_c - w)^-alpha. Intervals of alpha, q and beta are normal: where the largest width that saw a
+    /// transition is far from w_c, those of 95 per cent cover 87 to 90.
     pub exponent: Uncertain,
     /// q of chi_tau/tau^2 ~ (w_c - w)^-q.
     pub scatter_exponent: Uncertain,

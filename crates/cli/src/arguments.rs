@@ -39,7 +39,7 @@ pub(crate) enum Command {
     Runs(RunsArguments),
     /// Draw the figures of runs again, from their saved states; computes nothing.
     Figures(FiguresArguments),
-    /// Say what would run, how long it would take and what looks doubtful; tries a few steps, writes nothing.
+    /// Say what would run, how long it would take and what looks doubtful, after a short trial; writes nothing.
     Check(CheckArguments),
     /// Say what to expect of a pump: dimensionless groups, the published runs like it, cost.
     Design(DesignArguments),
@@ -285,7 +285,7 @@ pub(crate) struct NewtonianArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Reads the published rows of finished runs, computes a random sample of them again, compares it to the bit, and examines every claim. Called again it goes on where it stopped; runs are shared by --quick, --full and --fresh. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/ and again/. The exit code is 3 where a run computed again differs from its published row."
+    after_help = "Reads the published rows of finished runs, computes a random sample of them again, compares it to the bit, and examines every claim. Called again it goes on where it stopped; runs are shared by --quick, --full and --fresh. Writes report.html, report.md, claims.json, figures/ and tables/, and keeps the runs in stores/ and again/. The exit code is 3 where a run computed again differs from its published row."
 )]
 pub(crate) struct ReproduceArguments {
     /// How many published rows to compute again: a part of the rows of each study, such as 1%, or as many as fit into a

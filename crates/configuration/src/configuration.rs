@@ -55,8 +55,8 @@ pub struct Configuration {
 /// The tube: wall spheres in rings or at random places. It is periodic along its axis, or its ends are open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tube {
-    /// Mean radius a of the tube, to the centres of the wall spheres. The wall's surface, also of a smooth wall, lies half of
-    /// wall.sphere_diameter inside it.
+    /// Radius a of the tube, to the centres of the wall spheres: the mean one of a sine, the largest of other waveforms. The
+    /// wall's surface, also of a smooth wall, lies half of wall.sphere_diameter inside it.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub radius: f64,
     /// Wavelength lambda.
@@ -83,12 +83,12 @@ pub struct Tube {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-unit" = "d", "items" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
     pub places: Vec<f64>,
-    /// Wall spheres in a ring; 0 in a smooth wall, where it is not given.
+    /// Wall spheres in a ring. A smooth wall has none: there the key is left out, and results show 0.
     #[schemars(extend("x-unit" = "1", "minimum" = 3, "maximum" = 1_000_000))]
     pub spheres_per_ring: u32,
     /// Rings in a wavelength. Staggered rings under strain control need an even number; under stress control an odd number
     /// needs an even number of waves. Random and disordered walls have as many spheres as so many rings would have; a wall
-    /// from a file does not use it. 0 in a smooth wall, where it is not given.
+    /// from a file does not use it. A smooth wall has none: there the key is left out, and results show 0.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub rings_per_wave: u32,
 }

@@ -287,9 +287,9 @@ pub(crate) struct UnitsKeys {
     #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub(crate) grain_diameter: Option<f64>,
     /// What the grains are made of: stands for units.density, contact.static_friction and kinetic_friction, the restitution
-    /// (contact.restitution), and under contact.law = "hertz" for contact.poisson_ratio and units.young_modulus. Values that
-    /// the same file gives, or a later setting, hold instead; of those of a preset only a modulus does. Grains as hard as the
-    /// material take long: give a smaller modulus.
+    /// (contact.restitution), and under contact.law = "hertz" for contact.poisson_ratio and units.young_modulus. They
+    /// replace the values of a preset, except a Young's modulus. Values that the same file gives, or a later setting, replace
+    /// them. Grains as hard as the material take long: give a smaller modulus.
     #[serde(rename = "material")]
     #[schemars(extend("default" = null))]
     pub(crate) _material: Option<String>,

@@ -176,7 +176,7 @@ mod tests {
         }
         for line in [
             "## [wall.keep]",
-            "| `radius` | Mean radius a of the tube, to the centres of the wall spheres.",
+            "| `radius` | Radius a of the tube, to the centres of the wall spheres",
             "frictional: `3.5`",
             "`printed`: As the talk prints it",
             "whole number from 1 to 1e6 | `20`",

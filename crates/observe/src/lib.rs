@@ -35,7 +35,7 @@ pub use mixing::Mixing;
 pub use orientation::Orientations;
 pub use profile::{PartOfWave, ProfileBin, WaveFrameProfile, WavePart};
 pub use quantity::{Quantity, Reading, Value};
-pub use sample::{Observer, Sample};
+pub use sample::{Observer, Sample, waves_passed};
 pub use segregation::Segregation;
 pub use series::{MOST_ROWS, Series};
 pub use shape::TubeShape;

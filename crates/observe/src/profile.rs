@@ -124,10 +124,12 @@ impl Sums {
         self.momentum.z / self.mass
     }
 
-    /// sum m |v - <v>|^2/(3 N), <v> the mean velocity of the bin.
+    /// sum m |v - <v>|^2/(3 N), <v> the mean velocity of the bin; NaN without grains.
     fn temperature(&self) -> f64 {
-        ((self.twice_energy - self.momentum.length_squared() / self.mass) / (3.0 * self.number))
-            .max(0.0)
+        let about_mean = self.twice_energy - self.momentum.length_squared() / self.mass;
+        // Rounding may leave a negative number.
+        let about_mean = if about_mean < 0.0 { 0.0 } else { about_mean };
+        about_mean / (3.0 * self.number)
     }
 }
 

@@ -236,7 +236,7 @@ impl Sample {
         let inside = sums.inside;
         let rate = |flux: f64| heading * flux / (length * interval);
         // Jmax = N c/L with the mean wave speed of the interval.
-        let wave_run = (after.cycles - before.cycles) * wall.wavelength();
+        let wave_run = waves_passed(before.cycles, after.cycles) * wall.wavelength();
         let ratio = |flux: f64, number: f64| {
             if wave_run > 0.0 && number > 0.0 {
                 heading * flux / (number * wave_run)
@@ -387,6 +387,19 @@ fn variance(number: f64, sum: f64, sum_of_squares: f64) -> f64 {
     let variance = sum_of_squares / number - mean * mean;
     // Rounding may leave a negative number.
     if variance < 0.0 { 0.0 } else { variance }
+}
+
+/// Rounding of the wavelengths that a wave has run, as a part of them.
+const ROUNDING: f64 = 1e-12;
+
+/// Wavelengths that a wave has run between two moments, from those that it had run by each; 0 where they differ by rounding.
+pub fn waves_passed(before: f64, after: f64) -> f64 {
+    let passed = after - before;
+    if passed > ROUNDING * after.abs() {
+        passed
+    } else {
+        0.0
+    }
 }
 
 /// Mass of the grains between the ends of an open tube, of all grains of a periodic one \[m\].

@@ -2,7 +2,7 @@
 
 use peristalsis_engine::Simulation;
 
-use crate::sample::Observer;
+use crate::sample::{Observer, waves_passed};
 use crate::series::{Join, Series, joined};
 use crate::view::{View, floor};
 
@@ -91,7 +91,7 @@ impl WaveByWave {
         let wavelength = wall.wavelength();
         let waves = self.sums.len();
         let half_way = 0.5 * (before.cycles + after.cycles) + throat;
-        let wave_run = (after.cycles - before.cycles) * wavelength;
+        let wave_run = waves_passed(before.cycles, after.cycles) * wavelength;
         let grains = before.unfolded.iter().zip(&after.unfolded);
         let ends = view.simulation.ends();
         for (grain, ((start, end), &inside)) in grains.zip(&view.inside).enumerate() {

@@ -170,6 +170,13 @@ impl Plan {
         self.runs.sort_by_key(|run| (run.replicate, run.point));
     }
 
+    /// Identity of the first run of a point, the same for points that are the same run.
+    pub(crate) fn first_run(&self, point: &Point) -> Identity {
+        let configuration = &point.configuration;
+        let (identity, _) = Identity::of(configuration, self.stopping, &self.record, 1)[0];
+        identity
+    }
+
     /// The same points with some of the runs.
     pub(crate) fn part(&self, is_in: impl Fn(&PlannedRun) -> bool) -> Self {
         let mut part = self.clone();

@@ -1,6 +1,6 @@
 //! Where the flow changes its kind along an axis, and the points that are added there.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use peristalsis_configuration::document::Item;
 use peristalsis_configuration::{InitialState, takes_whole_numbers, word};
@@ -203,7 +203,8 @@ pub fn brackets(
 /// Between the value at which all runs changed their flow and that at which none did, the gaps between points are halved
 /// until none is wider than the tolerance. A line of points is bisected only when all its runs have ended, so that the
 /// points added do not depend on the order in which runs end. Of a key that takes whole numbers the middle is one, or its
-/// neighbour where the configuration allows that alone; a gap without a point that can be stays as it is.
+/// neighbour where the configuration allows that alone. A gap stays as it is where no point can be, and where the point in
+/// its middle is a run that the plan has: that has failed, or becomes the run of another value.
 pub fn refine(
     study: &Specification,
     plan: &mut Plan,
@@ -214,6 +215,7 @@ pub fn refine(
     };
     let is_whole = takes_whole_numbers(&study.axes[refine.axis].keys[0].0);
     let mut grown = false;
+    let mut known: HashSet<Identity> = plan.runs().iter().map(|run| run.identity).collect();
     loop {
         let counts = counts(plan, found);
         let mut added = Vec::new();
@@ -237,7 +239,7 @@ pub fn refine(
                     let state = study.states.as_ref().map(|_| model.state);
                     study.point(&choice, &model.rows, state).ok()
                 });
-                added.extend({ between }.next());
+                added.extend({ between }.find(|point| known.insert(plan.first_run(point))));
             }
         }
         if added.is_empty() {

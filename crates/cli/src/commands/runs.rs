@@ -108,7 +108,8 @@ fn entry(path: &Path) -> Value {
         "drive": drive,
         "amplitude": amplitude,
         "amplitude_led": led(drive),
-        "periods": periods,
+        // Of drive.strain_rate, unlike a summary's, which are the wavelengths that the wave has run.
+        "periods_done": periods,
         "periods_asked": configuration.run.periods,
         "time": time,
         "duration_asked": configuration.run.duration,
@@ -262,7 +263,7 @@ fn row(run: &Value) -> [String; 10] {
             _ => format!("f^P = {}", drive("amplitude")),
         },
         match number("periods_asked") {
-            Some(_) => done("periods", "periods_asked", ""),
+            Some(_) => done("periods_done", "periods_asked", ""),
             None => done("time", "duration_asked", " t"),
         },
         status,

@@ -108,3 +108,23 @@ fn grains_that_the_back_pressure_would_push_away_do_not_settle() {
         );
     }
 }
+
+/// A pump engineer: the error named a key of the computation that no design has; and a warning praised a stiffness of 10 N/m
+/// under a back pressure for which 40000 had been chosen.
+#[test]
+fn grains_that_the_back_pressure_would_crush_are_refused_and_not_advised() {
+    let place = Place::new();
+    let hose = HOSE.replace("frequency = 20.0", "frequency = 1.0");
+    place.write("hose.toml", hose);
+    let soft = "design hose.toml grain.stiffness=1e-4 drive.back_pressure=1e6";
+    place.refuses(
+        soft,
+        &["--set grain.stiffness", "drive.back_pressure", "at least"],
+    );
+    let hard = place.does("design hose.toml drive.back_pressure=2e5");
+    let all = hard.stdout + &hard.stderr;
+    assert!(
+        !all.contains("takes") || !all.contains("steps per period"),
+        "{all}"
+    );
+}

@@ -84,7 +84,11 @@ fn sizes(grains: &mut Grains, by_volume: Option<f64>, context: &mut Context<'_>)
             "a table of sizes needs as many grains.fractions as grains.diameters"
         }
         SizeForm::Table if !grains.fractions.iter().any(|it| *it > 0.0) => {
-            "a table of sizes needs a diameter with a fraction above 0"
+            return context.refuse(
+                &["grains.fractions", "grains.sizes"],
+                "all fractions of the table of sizes are 0",
+                "a table of sizes needs a diameter with a fraction above 0",
+            );
         }
         SizeForm::Lognormal => {
             let median = grains
@@ -93,7 +97,13 @@ fn sizes(grains: &mut Grains, by_volume: Option<f64>, context: &mut Context<'_>)
             if (least..=largest).contains(median) {
                 return Some(());
             }
-            "grains.diameter_median is not between grains.diameter_min and grains.diameter_max"
+            return context.refuse(
+                &["grains.diameter_median"],
+                format!(
+                    "grains.diameter_median = {median} is not between the bounds of the diameters"
+                ),
+                format!("from {least} (grains.diameter_min) to {largest} (grains.diameter_max)"),
+            );
         }
         SizeForm::Two => {
             let by_volume = by_volume.map(|part| Sizes::number_of_volume(bounds, part));

@@ -31,13 +31,14 @@ pub(super) fn inlet(
     }
     let (gap, usual) = (gap(grains.diameter_max), USUAL_LENGTH * grains.diameter_max);
     let length = tube.length() - gap;
-    let least = gap + usual;
+    let least = plain(gap + usual);
     if length <= usual {
         return context.refuse(
             &["tube.wavelength", "tube.waves", "tube.ends"],
             format!(
-                "an open tube needs a length above {least}: {gap} between its ends, and {usual} for the inlet; waves * \
-                 wavelength is {}",
+                "an open tube needs a length above {least}: {} between its ends, and {} for the inlet; waves * wavelength is {}",
+                plain(gap),
+                plain(usual),
                 plain(tube.length())
             ),
             format!("waves * wavelength is above {least}"),

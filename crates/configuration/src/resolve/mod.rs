@@ -235,8 +235,10 @@ fn check_given(table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
         .help(help);
     let place = key
         .split_once('.')
-        .and_then(|(table_name, _)| table.get(table_name))
-        .map(|entry| &entry.key);
+        .and_then(|(table_name, _)| Some((table_name, &table.get(table_name)?.key)))
+        // What a material stands for is in tables that nobody wrote.
+        .filter(|(table_name, place)| place.text() == *table_name)
+        .map(|(_, place)| place);
     if let Some(place) = place {
         problem = problem.at(place, "would stand in this table");
     }
@@ -342,8 +344,9 @@ fn written_as<'k>(key: &'k str, entry: &'k document::Entry) -> &'k str {
     }
 }
 
-/// A number for a message, without the zeros of one that is very large or very small.
+/// A number for a message to twelve digits, without the zeros of one that is very large or very small.
 fn plain(value: f64) -> String {
+    let value = format!("{value:.11e}").parse().unwrap_or(value);
     match value.abs() {
         1e-4..1e9 | 0.0 => value.to_string(),
         _ => format!("{value:e}"),

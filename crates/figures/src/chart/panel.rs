@@ -33,6 +33,8 @@ pub(super) struct AxisWish {
 pub(super) const MARGIN: f64 = 0.05;
 /// Decades on either side of a single value on a logarithmic axis.
 const LONE_DECADES: f64 = 0.3;
+/// Part of a single value on either side of it on a linear axis.
+const LONE_PART: f64 = 0.1;
 
 impl ChartPanel {
     /// An empty panel with the labels of its axes, in markup; both are linear and as long as the data.
@@ -146,10 +148,10 @@ impl AxisWish {
         };
         let (mut low, mut high) = (forth(least), forth(largest));
         if low == high {
-            let spread = if logarithmic {
-                LONE_DECADES
-            } else {
-                (low.abs() * 0.1).max(0.5)
+            let spread = match self.scale {
+                Scale::Logarithmic => LONE_DECADES,
+                Scale::Linear if low != 0.0 => LONE_PART * low.abs(),
+                Scale::Linear | Scale::Counting => (LONE_PART * low.abs()).max(0.5),
             };
             (low, high) = (low - spread, high + spread);
         }
@@ -174,6 +176,9 @@ mod tests {
         assert!((axis.range().1 - 10.0).abs() < 1e-12, "{:?}", axis.range());
         let nothing = wish.axis("x", (0.0, 0.0), (0.0, 0.05)).expect("a range");
         assert!(nothing.range().0 == 0.0 && nothing.range().1 > 0.0);
+        let lone = AxisWish::new("").axis("x", (0.04, 0.04), (0.0, 0.0));
+        let (low, high) = lone.expect("a range").range();
+        assert!(0.03 < low && low < 0.04 && 0.04 < high && high < 0.05);
     }
 
     #[test]

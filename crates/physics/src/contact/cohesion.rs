@@ -32,8 +32,8 @@ pub struct Cohesion {
     #[schemars(extend("x-unit" = "d", "minimum" = 0, "maximum" = 1))]
     pub cohesion_range: f64,
     /// Surface energy gamma of JKR cohesion, half the work of adhesion: the force that parts two spheres is
-    /// 3 pi gamma R_ij, R_ij the reduced radius. Needs the Hertz law. 0: none. Softer grains than the real ones cling more:
-    /// keep gamma/(Y^(2/3) d) or the pull-off force over the weight, whichever counts, as it is.
+    /// 3 pi gamma R_ij, R_ij the reduced radius. Needs the Hertz law. 0: none. Softer grains than the real ones stick
+    /// in faster impacts: gamma/Y^(2/5) kept as it is keeps the speed up to which they stick, gamma alone the pull-off force.
     #[schemars(extend("x-unit" = "m t^-2", "minimum" = 0, "maximum" = 1e12))]
     pub surface_energy: f64,
     /// Where the neck of a JKR contact breaks.

@@ -191,7 +191,8 @@ def _late(simulation: Simulation, periods: float, settle: float) -> tuple[float,
     series = simulation.timeseries()
     period, ratio = series["period"], series["flow_rate_ratio"]
     end = period[-1] if len(period) else np.nan
-    late = ratio[period > end - max(1, int((1 - settle) * periods)) + 1e-6]
+    whole = max(1, int((1 - settle) * periods + 1e-9))
+    late = ratio[period > end - whole + 1e-6]
     late = late[np.isfinite(late)]
     if not len(late):
         return np.nan, np.nan

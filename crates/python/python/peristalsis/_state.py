@@ -252,7 +252,7 @@ class State:
 
         Notes
         -----
-        Forces are those at the present positions and velocities. Their sum over the contacts of a grain is `forces`.
+        Forces are those at the present positions and velocities. Their sum over the contacts of a grain, with the body force, is `forces`.
 
         Examples
         --------

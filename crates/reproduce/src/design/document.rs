@@ -241,6 +241,25 @@ fn check_together(keys: &Keys, table: &Table, problems: &mut Problems) {
             "lengths are in metres: 8 mm are 8e-3",
         );
     }
+    let pressed = drive.back_pressure.abs() * grain.diameter;
+    if let Some(stiffness) = grain.stiffness
+        && pressed > stiffness
+    {
+        refuse(
+            ProblemKind::Inconsistent,
+            "grain.stiffness",
+            format!(
+                "grain.stiffness = {stiffness} N/m is so soft that drive.back_pressure = {} Pa would squeeze grains by more \
+                 than their diameter",
+                drive.back_pressure
+            ),
+            &format!(
+                "at least {} N/m, for overlaps of {} %; left out, it is chosen so",
+                rounded(pressed / OVERLAP_OF_A_LOAD, 3),
+                100.0 * OVERLAP_OF_A_LOAD
+            ),
+        );
+    }
     if drive.segments.is_some() && drive.waveform != WaveformName::Segments {
         refuse(
             ProblemKind::Conflict,

@@ -31,7 +31,8 @@ const SMALLEST_GRAIN: f64 = 1e-4;
 pub const NEAR: &str = "near: outside the range, but by less than the difference up to which two tubes count as alike; \
                         treated as inside";
 /// What distances from published points mean.
-pub const DISTANCES: &str = "0 is the same tube, 1 just alike";
+pub const DISTANCES: &str =
+    "0 is the same tube, 1 just alike; beyond 1 errors grow, beyond 2 nothing is said";
 
 /// A group of a design beside those of the published runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -177,7 +178,7 @@ fn regime(configuration: &Configuration, expected: &[ExpectedFlow]) -> String {
             .to_owned();
     }
     if first.range[1] - first.range[0] > FAST && first.error > SPLIT {
-        return "near the transition: published tubes like it either slip or jam".to_owned();
+        return "near the transition: the nearest published tubes either slip or jam".to_owned();
     }
     match first.flow_rate_ratio {
         flow if flow > 1.0 - UNJAMMED => "jammed: the grains are locked to the wave".to_owned(),

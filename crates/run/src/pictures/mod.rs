@@ -106,7 +106,8 @@ pub fn title(configuration: &Configuration) -> String {
         ScheduledParameter::StrainRate,
         configuration.drive.strain_rate,
     );
-    let waits = configuration.inlet.is_some_and(|inlet| inlet.waiting > 0);
+    // In an open tube those that have left wait until they are put in again.
+    let waits = configuration.inlet.is_some();
     let wait = if waits { " with those that wait" } else { "" };
     let rate = format!("*ε\u{307}* = {rate} {}", units(configuration).rate());
     let number = format!("*N* = {}{wait}", configuration.grains.number);

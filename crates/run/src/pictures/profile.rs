@@ -7,6 +7,7 @@ use peristalsis_observe::ProfileBin;
 use super::{HEIGHT, guide, label, title};
 use crate::run::Run;
 use crate::scene::units;
+use crate::summary::late_wave_speed;
 use crate::tables::late_profile;
 
 /// Height of a panel in millimetres: a name in words stands beside it.
@@ -46,7 +47,7 @@ fn panel(label_of_value: &str) -> ChartPanel {
 pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
     let configuration = run.configuration();
     let bins = closed_profile(run);
-    let speed = configuration.wave_speed();
+    let speed = late_wave_speed(run);
     let unit = units(configuration).per_pressure();
     let curve = |label: &str, tint: Tint, of: fn(&ProfileBin) -> Value| {
         with_curve(panel(label), tint, &bins, of)
@@ -57,9 +58,10 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
             bin.density
         })
         .y_range(0.0..),
-        velocity(&bins, speed),
-        temperature(&bins, speed),
     ];
+    if speed > 0.0 {
+        panels.extend([velocity(&bins, speed), temperature(&bins, speed)]);
+    }
     if bins.iter().any(|bin| bin.wall_pressure.0.is_finite()) {
         let pressure = format!("pressure, *p*{unit}");
         let shear = format!("shear, *σ*{unit}");

@@ -45,7 +45,7 @@ pub fn snapshot_stack(runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
 fn draw(title: &str, runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
     let (unit, fastest) = unit_of_speed(runs);
     let views = runs.iter().map(|(_, run)| {
-        let speed = fastest.unwrap_or_else(|| run.configuration().wave_speed());
+        let speed = fastest.unwrap_or_else(|| wave_speed(run));
         SideView::of(run, speed)
     });
     let views: Vec<SideView> = views.collect();
@@ -79,16 +79,19 @@ fn axis(runs: &[(&str, &Run)]) -> &'static str {
 
 /// Unit of velocities, in markup: the speed of the wave, or of the fastest grain where the wave stands.
 fn unit_of_speed(runs: &[(&str, &Run)]) -> (String, Option<f64>) {
-    let Some((_, still)) = runs
-        .iter()
-        .find(|(_, run)| run.configuration().wave_speed() == 0.0)
-    else {
+    let Some((_, still)) = runs.iter().find(|(_, run)| wave_speed(run) == 0.0) else {
         return ("*c*".to_owned(), None);
     };
     let fastest = runs.iter().map(|(_, run)| largest_axial_speed(run));
     let fastest = rounded(fastest.fold(0.0, f64::max), 2);
     let time = units(still.configuration()).time();
     (format!("({fastest} *d*/{time})"), Some(fastest))
+}
+
+/// Speed of the wave now \[d/t\].
+fn wave_speed(run: &Run) -> f64 {
+    let (wall, time) = (run.simulation().wall(), run.simulation().time());
+    wall.frequency(time) * wall.wavelength()
 }
 
 /// |v_z| of the fastest grain \[d/t\].

@@ -147,6 +147,15 @@ impl Look {
             let reason = format!("there is no place z = {z} in this tube");
             return Err(refused(&reason, &format!("take 0 to {length} d")));
         }
+        if let Aspect::Section(Place::Position(position)) = self.aspect
+            && !position.is_finite()
+        {
+            let reason = format!("there is no position {position} in the wave");
+            return Err(refused(
+                &reason,
+                "take a number of wavelengths, such as 0.25",
+            ));
+        }
         Ok(())
     }
 }

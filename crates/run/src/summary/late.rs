@@ -5,10 +5,13 @@ use core::ops::Deref;
 
 use peristalsis_analysis::{mean_with_error, variance};
 use peristalsis_configuration::{Configuration, ScheduledParameter};
-use peristalsis_observe::{AxialDispersion, ContactForces, PartOfWave, ProfileBin, Sample};
+use peristalsis_observe::{
+    AxialDispersion, ContactForces, PartOfWave, ProfileBin, Sample, waves_passed,
+};
 
 use super::mean_of;
 use crate::recorder::{Recorder, greatest_common_divisor};
+use crate::run::Run;
 
 /// The late samples of a run, the last of all.
 ///
@@ -132,7 +135,20 @@ pub(super) fn frequency(samples: &[Sample], late: &[Sample]) -> f64 {
     let early = &samples[..samples.len() - late.len()];
     let of = |sample: Option<&Sample>| sample.map_or((0.0, 0.0), |it| (it.period, it.time));
     let (before, after) = (of(early.last()), of(late.last()));
-    (after.0 - before.0) / (after.1 - before.1)
+    waves_passed(before.0, after.0) / (after.1 - before.1)
+}
+
+/// Mean speed of the wave in the late part of a run \[d/t\].
+pub(crate) fn late_wave_speed(run: &Run) -> f64 {
+    let (configuration, recorder) = (run.configuration(), run.recorder());
+    let schedule = configuration.drive.schedule(ScheduledParameter::StrainRate);
+    match schedule {
+        Some(_) => {
+            let late = recorder.late(run.late_fraction());
+            frequency(recorder.samples(), late) * configuration.tube.wavelength
+        }
+        None => configuration.wave_speed(),
+    }
 }
 
 /// Late mean of what flows against the wave: of -J where J < 0 and else 0, each J over the time of a sample \[1/t\].
@@ -409,6 +425,36 @@ mod tests {
     }
 
     /// A wave of one wavelength a time, then of next to none, with 10 grains in a tube of 2 wavelengths.
+    /// A pump engineer: a profile was told over the speed of a strain rate that the schedule had left.
+    #[test]
+    fn the_late_speed_of_a_wave_is_that_of_its_schedule() {
+        for (schedule, expected) in [
+            ("", 0.1),
+            (
+                "{form='steps',parameter='strain_rate',at=[0],values=[0.04]}",
+                0.4,
+            ),
+            (
+                "{form='steps',parameter='strain_rate',at=[2],values=[0.0]}",
+                0.0,
+            ),
+        ] {
+            let course = format!("drive.schedule={schedule}");
+            let mut settings = vec!["grains.number=5", "tube.waves=1", "drive.strain_rate=0.01"];
+            settings.extend(["run.periods=4", "observe.late_fraction=0.5"]);
+            if !schedule.is_empty() {
+                settings.push(&course);
+            }
+            let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+            let mut run = Run::new(configuration).unwrap();
+            while !run.is_complete() {
+                run.advance().unwrap();
+            }
+            let speed = late_wave_speed(&run);
+            assert!((speed - expected).abs() < 1e-12, "{schedule}: {speed}");
+        }
+    }
+
     #[test]
     fn the_flow_of_a_wave_that_changes_its_speed_is_over_the_mean() {
         let of = |slow: f64, changes: bool| {

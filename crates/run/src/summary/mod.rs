@@ -17,6 +17,7 @@ use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 pub use arrangement::{MixedGrains, SegregatedSizes};
 pub use discharge::Discharge;
 pub use label::label;
+pub(crate) use late::late_wave_speed;
 use late::{ForceOfContacts, Late, axial_dispersion, residence_time, wall_torque};
 pub use late::{Pumping, Wear};
 use local_flow::LocalFlow;

@@ -129,7 +129,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("transition_time_70", "t", "time of the transition with the threshold 0.7; missing where there was none", Optional(|s| s.transition_times[6])).only_in_rows().labelled("transition time τ at J/Jmax = 0.7"),
     result("transition_time_80", "t", "time of the transition with the threshold 0.8; missing where there was none", Optional(|s| s.transition_times[7])).only_in_rows().labelled("transition time τ at J/Jmax = 0.8"),
     result("transition_time_90", "t", "time of the transition with the threshold 0.9; missing where there was none", Optional(|s| s.transition_times[8])).only_in_rows().labelled("transition time τ at J/Jmax = 0.9"),
-    result("flow_rate_ratio", "1", "late mean of J/Jmax of the grains inside; where the wave changes its speed or no grain is inside for a while, late mean of J over that of Jmax", Measured(|s| s.flow_rate_ratio)).labelled("J/Jmax, late mean"),
+    result("flow_rate_ratio", "1", "late mean of J/Jmax of the grains inside. If the wave changes its speed, or no grain is inside for a while, it is the late mean of J over the late mean of Jmax", Measured(|s| s.flow_rate_ratio)).labelled("J/Jmax, late mean"),
     result("flow_rate_ratio_drift", "1", "late J/Jmax, mean of its second half less that of its first", Real(Summary::flow_rate_ratio_drift)).labelled("drift of J/Jmax"),
     result("flow_rate_ratio_variance", "1", "variance of the late averages of J/Jmax over a period each", Real(Summary::flow_rate_ratio_variance)).labelled("variance of J/Jmax"),
     result("flow_rate_ratio_raw", "1", "late mean of J/Jmax of all grains", Real(|s| s.flow_rate_ratio_raw)).labelled("J/Jmax of all grains"),

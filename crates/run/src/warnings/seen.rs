@@ -1,6 +1,10 @@
 //! Warnings about events of a run that solid grains in a tight tube would not show.
 
+use core::f64::consts::PI;
+
+use peristalsis_analysis::number::plain;
 use peristalsis_configuration::{Configuration, Control};
+use peristalsis_observe::{Sample, clear_volume_of_wave};
 use peristalsis_physics::wall::Arrangement;
 
 use super::softness::{LARGEST_OVERLAP, Material};
@@ -36,6 +40,7 @@ pub(super) fn warnings(run: &Run) -> Vec<Warning> {
     warnings.extend(threshold::missed(run));
     warnings.extend(ran_dry(run));
     warnings.extend(fed_less(run));
+    warnings.extend(emptied(run));
     warnings
 }
 
@@ -132,6 +137,40 @@ fn ran_dry(run: &Run) -> Option<Warning> {
     );
     let key = "inlet.waiting";
     (part > DRY).then_some(Warning { key, message })
+}
+
+/// Part of the clear volume that grains at rest fill at least, in a tube that is full.
+const FULL: f64 = 0.5;
+/// Growth of the mass in the tube from the first half of the late part to the second from which on it still fills up.
+const FILLS_UP: f64 = 1.02;
+
+/// That an inlet does not keep a tube full whose wave stands, though grains wait: what leaves is what comes in.
+fn emptied(run: &Run) -> Option<Warning> {
+    let (simulation, configuration) = (run.simulation(), run.configuration());
+    let (ends, inlet) = (simulation.ends()?, configuration.inlet?);
+    let late = run.recorder().late(run.late_fraction());
+    let (first, last) = (late.first()?, late.last()?);
+    let clear = f64::from(configuration.tube.waves) * clear_volume_of_wave(simulation);
+    // A grain of mass m has the volume pi m/6.
+    let filled = PI / 6.0 * last.hold_up / clear;
+    let (before, after) = late.split_at(late.len() / 2);
+    let held = |samples: &[Sample]| {
+        let held = samples.iter().map(|sample| sample.hold_up);
+        held.sum::<f64>() / samples.len() as f64
+    };
+    let message = format!(
+        "grains fill {:.0} % of the tube and no more, though {} wait: the outlet lets out what the inlet puts in, and could let \
+         out more; take a larger inlet.velocity ({}) and a longer inlet.length ({})",
+        100.0 * filled,
+        ends.waiting(),
+        plain(inlet.velocity),
+        plain(inlet.length),
+    );
+    let key = "inlet.velocity";
+    let stands = configuration.drive.period().is_none() && inlet.feed_rate.is_none();
+    let flows = last.discharged > first.discharged && ends.waiting() > 0;
+    let is_emptied = filled < FULL && held(after) < FILLS_UP * held(before);
+    (stands && flows && is_emptied).then_some(Warning { key, message })
 }
 
 /// That grains have left the tube.

@@ -1,9 +1,10 @@
 //! Whether grains as soft, or as hard, as the units in SI make them can be what was meant.
 
+use peristalsis_analysis::number::significant;
 use peristalsis_configuration::{
     Body, Configuration, Control, Elasticity, ScheduledParameter, Units, elasticity_key,
 };
-use peristalsis_physics::contact::{Impact, NormalLaw};
+use peristalsis_physics::contact::{Impact, NormalLaw, reduced_radius};
 
 use super::warning::Warning;
 
@@ -46,21 +47,23 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
     if overlap > LARGEST_OVERLAP {
         let speed = hardest.wave_speed() * units.velocity();
         let slower = libm::pow(LARGEST_OVERLAP / overlap, 1.0 / per_speed) * strain_rate;
-        let slower = three_digits(slower, f64::floor);
+        let slower = significant(three_digits(slower, f64::floor), 3);
         let harder = three_digits(value_for(LARGEST_OVERLAP), f64::ceil);
         let what = if is_led {
-            format!("strain rates of {slower:.2e} or less in drive.schedule")
+            format!("strain rates of {slower} or less in drive.schedule")
         } else {
             format!(
-                "drive.strain_rate = {slower:.2e} or less; or a {name} of {harder:.2e} {unit} or more together with \
-                 units.wave_frequency = {frequency:.2e} (without it a larger {name} makes the wave faster, and the overlap \
-                 stays){}",
+                "drive.strain_rate = {slower} or less; or a {name} of {} {unit} or more together with units.wave_frequency = {} \
+                 (without it a larger {name} makes the wave faster, and the overlap stays){}",
+                significant(harder, 3),
+                significant(frequency, 3),
                 scaled_with(configuration, name, value / harder)
             )
         };
         let message = format!(
-            "two grains that meet at the wave's speed, {speed:.3e} m/s, overlap by {:.0} % of a diameter, which no solid \
-                 grain does: for at most {:.0} % take {what}",
+            "two grains that meet at the wave's speed, {} m/s, overlap by {:.0} % of a diameter, which no solid grain does: for at \
+                 most {:.0} % take {what}",
+            significant(speed, 4),
             100.0 * overlap,
             100.0 * LARGEST_OVERLAP,
         );
@@ -68,20 +71,46 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
     }
     let steps = configuration.drive.period()? / configuration.run.time_step;
     if steps > MOST_STEPS_PER_PERIOD && overlap < SMALL_OVERLAP && !is_led {
-        let softer = three_digits(value_for(SMALL_OVERLAP), f64::ceil);
+        let of_load = value * load(&hardest) / force_at(&hardest, SMALL_OVERLAP);
+        let softer = three_digits(value_for(SMALL_OVERLAP).max(of_load), f64::ceil);
+        if softer >= value {
+            return None;
+        }
         // The unit of time grows as elasticity^(-1/2).
         let fewer = steps * (softer / value).sqrt();
         let message = format!(
-            "at this {name} a period of the wave takes {steps:.1e} steps. The flow of hard grains hardly depends on \
-                 their {name} while overlaps stay small: {softer:.2e} {unit}, with units.wave_frequency = {frequency:.2e}, \
-                 still keeps that of two grains that meet at the wave's speed at {:.0} % of a diameter, and takes {fewer:.1e} \
-                 steps per period (check with a harder run){}",
+            "at this {name} a period of the wave takes {} steps. The flow of hard grains hardly depends on their {name} while \
+                 overlaps stay small: {} {unit}, with units.wave_frequency = {}, still keeps those of grains that meet at the \
+                 wave's speed, or bear weight and back pressure, at {:.0} % of a diameter, and takes {} steps per period \
+                 (check with a harder run){}",
+            significant(steps, 2),
+            significant(softer, 3),
+            significant(frequency, 3),
             100.0 * SMALL_OVERLAP,
+            significant(fewer, 2),
             scaled_with(configuration, name, value / softer)
         );
         return Some(Warning { key, message });
     }
     None
+}
+
+/// Force on a grain of the largest under what bears on it: the pressure rise over a wavelength along the tube, and a column
+/// of grains as high as the tube is wide across it.
+fn load(configuration: &Configuration) -> f64 {
+    let [x, y, _] = configuration.body.gravity;
+    let diameter = configuration.grains.diameter_max;
+    let column = 2.0 * configuration.tube.radius / diameter;
+    let weight = diameter * diameter * diameter * x.hypot(y);
+    configuration.pressure_rise().abs() * diameter * diameter + weight * column
+}
+
+/// Force between two of the largest grains at rest that overlap by a part of their diameter.
+fn force_at(configuration: &Configuration, overlap: f64) -> f64 {
+    let diameter = configuration.grains.diameter_max;
+    let radius = reduced_radius(diameter, diameter);
+    let law = &configuration.contact.normal;
+    law.force(overlap * diameter, 0.0, radius).force
 }
 
 /// The elasticity of the grains that the units give.
@@ -132,7 +161,8 @@ fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String
     }
     let keys = keys.join(", ");
     format!(
-        ". With that {name} multiply what is in units of it ({keys}) by {factor:.3e}, so that it stays the same in SI"
+        ". With that {name} multiply what is in units of it ({keys}) by {}, so that it stays the same in SI",
+        significant(factor, 4)
     )
 }
 

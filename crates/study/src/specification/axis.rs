@@ -95,7 +95,7 @@ impl Axis {
             let origin = &item(table, "step").origin;
             let problem = Problem::new(
                 ProblemKind::Inconsistent,
-                format!("from {from} to {to} is {intervals} steps of {step}"),
+                format!("from {from} to {to} is {intervals:.3} steps of {step}"),
             )
             .key("axes.step")
             .at(origin, "this step")

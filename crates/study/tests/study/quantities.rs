@@ -36,7 +36,7 @@ fn page() -> String {
          list `transition_times`. What describes the tube (`width` to `rings_per_wave`, `initial_state`) stands in \
          `config.toml`.\n\n{head}{outcome}\n\
          ## The time series\n\n\
-         Columns of friction, of an elastic wall, of a body force, of an open tube, of mixing (periodic tubes) and of segregation (several sizes) are there in runs that have these.\n\n{head}{}\n\
+         Columns of friction, of rolling resistance, of cohesion, of an elastic wall, of a body force, of an open tube, of mixing (periodic tubes) and of segregation (several sizes) are there in runs that have these.\n\n{head}{}\n\
          ## The profile in the wave frame\n\n{head}{}\n\
          ## The flow wave by wave\n\n{head}{}",
         rows(COLUMNS.iter().map(|column| &column.quantity)),

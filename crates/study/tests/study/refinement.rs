@@ -1,5 +1,7 @@
 //! Refinement against runs whose jamming time is known.
 
+use std::collections::{HashMap, HashSet};
+
 use peristalsis_configuration::InitialState;
 use peristalsis_study::{Finding, Identity, Plan, brackets, refine};
 
@@ -233,4 +235,57 @@ fn whole_numbers_are_halved_in_whole_numbers_that_can_be() {
     // Staggered rings are even in number: an odd middle gives way to its neighbour, and 14 and 16 stay apart.
     let rings = refined("key = \"tube.rings_per_wave\"\nvalues = [12, 18]", 15.0);
     assert_eq!(rings, [12.0, 14.0, 16.0, 18.0]);
+}
+
+/// Refines until nothing is added, runs that end as `finding` says of the value of the last axis.
+fn refined(text: &str, finding: impl Fn(f64) -> Finding) -> Plan {
+    let study = study(text);
+    let mut plan = study.plan().clone();
+    loop {
+        let known: HashMap<Identity, Finding> = plan
+            .runs()
+            .iter()
+            .map(|run| {
+                let setting = plan.point(run).settings.last().unwrap();
+                (run.identity, finding(setting.value.number().unwrap()))
+            })
+            .collect();
+        if !refine(&study, &mut plan, &|identity| known.get(identity).copied()) {
+            return plan;
+        }
+    }
+}
+
+/// A tester: a middle that had failed was added again and again, for ever.
+#[test]
+fn a_middle_that_has_failed_is_not_added_again() {
+    let plan = refined(STUDY, |width| match width {
+        ..2.75 => Finding::Transition,
+        2.85.. => Finding::NoTransition,
+        _ => Finding::Nothing,
+    });
+    // 2.8, once in each of the four lines.
+    assert_eq!(plan.points().len(), 4 * (3 + 1));
+}
+
+/// A tester: numbers of periods that become the same number of samples were added as runs of their own.
+#[test]
+fn a_middle_that_is_a_run_of_the_plan_is_not_added() {
+    let text = r#"
+name = "refined"
+preset = "frictionless"
+[[axes]]
+key = "run.periods"
+values = [5, 40]
+[refine]
+key = "run.periods"
+tolerance = 0.003
+"#;
+    let plan = refined(text, |periods| match periods < 5.94 {
+        true => Finding::NoTransition,
+        false => Finding::Transition,
+    });
+    let distinct: HashSet<Identity> = plan.runs().iter().map(|run| run.identity).collect();
+    assert_eq!(distinct.len(), plan.runs().len());
+    assert!(plan.runs().len() > 8);
 }

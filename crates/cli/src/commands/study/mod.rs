@@ -21,7 +21,7 @@ use crate::failure::Failure;
 /// What to do with a study.
 #[derive(Debug, Subcommand)]
 pub(crate) enum StudyCommand {
-    /// Say what a study would run, and how much time and disk it would take; tries a few steps, writes nothing.
+    /// Say what a study would run, and how much time and disk it would take, after a short trial; writes nothing.
     Plan(PlanArguments),
     /// Compute the runs that are missing; may be stopped, called again, and called several times at once.
     Run(RunArguments),

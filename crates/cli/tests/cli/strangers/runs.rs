@@ -537,3 +537,37 @@ fn names_that_are_given_in_the_wrong_place_are_put_right() {
     let help = place.does("run --help").stdout;
     assert!(help.contains("--checkpoint-every"));
 }
+
+/// A pump engineer: a wave that stopped where rounding left 1e-16 of a wavelength had a J/Jmax of 1e14.
+#[test]
+fn a_wave_that_has_stopped_has_no_flow_rate_ratio() {
+    let place = Place::new();
+    place.write(
+        "pause.toml",
+        "preset = \"frictionless\"\n[tube]\nwaves = 1\n[drive]\nstrain_rate = 0.011\n\
+         schedule = { form = \"steps\", parameter = \"strain_rate\", at = [2], values = [0.0] }\n\
+         [observe]\nlate_fraction = 0.5\n[run]\nperiods = 4\n",
+    );
+    place.does("run pause.toml --out r");
+    let summary = read_json(&place.path("r/summary.json"));
+    for key in ["flow_rate_ratio", "flow_rate_ratio_raw", "wall_torque"] {
+        assert!(summary[key].is_null(), "{key}: {}", summary[key]);
+    }
+    assert_eq!(summary["periods"], 2.0);
+}
+
+/// A pump engineer: a wider outlet let out no more, and nothing said that the inlet brought too little.
+#[test]
+fn an_inlet_that_does_not_keep_a_silo_full_is_named() {
+    let place = Place::new();
+    let pipe = "run --preset frictionless tube.waves=3 tube.ends=open drive.strain_rate=0 drive.width=2.9 \
+                inlet.waiting=60 grains.number=80 run.duration=400";
+    let run = place.does(&format!("{pipe} body.gravity=[0,0,-0.01] --out pipe"));
+    let said = run.says(&[
+        "inlet.velocity: grains fill",
+        "take a larger inlet.velocity",
+    ]);
+    assert!(said.stdout.contains("the outlet discharges"));
+    let lying = place.does(&format!("{pipe} --out lying"));
+    assert!(!lying.stderr.contains("inlet.velocity"), "{}", lying.stderr);
+}

@@ -286,3 +286,31 @@ fn wall_spheres_stand_where_a_table_says() {
     place.write("folder/wall.csv", "angle,place\n0,20\n");
     place.refuses("run folder/run.toml", &["0 <= z < L", "20"]);
 }
+
+/// A pump engineer: a median beyond the bounds was blamed on the form of the distribution.
+#[test]
+fn the_value_that_is_wrong_in_a_distribution_is_named() {
+    let place = Place::new();
+    let sizes = "[grains]\nsizes = \"lognormal\"\ndiameter_min = 0.5\ndiameter_max = 1.5\ndiameter_spread = 0.2\n\
+                 diameter_median = 2.5\n";
+    place.write("a.toml", format!("preset = \"frictionless\"\n{sizes}"));
+    place.refuses(
+        "check a.toml",
+        &["a.toml:7:19", "diameter_median = 2.5", "0.5", "1.5"],
+    );
+    let table = "grains.sizes=table grains.diameters=[1,2] grains.fractions=[0,0]";
+    place.refuses(
+        &format!("check --preset frictionless {table}"),
+        &["--set grains.fractions", "all fractions"],
+    );
+}
+
+/// A pump engineer: what a material stands for was said to be missing beside its name.
+#[test]
+fn a_missing_key_is_not_looked_for_beside_a_material() {
+    let place = Place::new();
+    let text = "[units]\nmaterial = \"sand\"\ngrain_diameter = 1e-3\nstiffness = 100.0\nwave_frequency = 1.0\n";
+    place.write("a.toml", text);
+    let refused = place.refuses("check a.toml", &["contact.law"]);
+    assert!(!refused.stderr.contains("material"), "{}", refused.stderr);
+}

@@ -120,7 +120,7 @@ class Survival:
         Raises
         ------
         AnalysisError
-            Where fewer than half of the runs had a transition.
+            Where the survival does not fall to 1/2.
 
         Examples
         --------
