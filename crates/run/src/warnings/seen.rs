@@ -142,7 +142,7 @@ fn ran_dry(run: &Run) -> Option<Warning> {
 /// Part of the clear volume that grains at rest fill at least, in a tube that is full.
 const FULL: f64 = 0.5;
 /// Growth of the mass in the tube from the first half of the late part to the second from which on it still fills up.
-const FILLS_UP: f64 = 1.02;
+const FILLS_UP: f64 = 1.05;
 
 /// That an inlet does not keep a tube full whose wave stands, though grains wait: what leaves is what comes in.
 fn emptied(run: &Run) -> Option<Warning> {

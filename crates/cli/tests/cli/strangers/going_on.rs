@@ -55,7 +55,7 @@ fn an_unfinished_run_says_how_far_it_is_and_goes_on_without_remains() {
     let reached = || {
         let runs = place.does("runs all --json").json();
         (
-            runs[0]["periods"].as_f64(),
+            runs[0]["periods_done"].as_f64(),
             runs[0]["status"].as_str().map(str::to_owned),
         )
     };
