@@ -8,6 +8,9 @@ export interface Ghost {
   points: number[][];
 }
 
+/** Whether branches of a tube like this one are published. */
+export const isPublished = ({ published }: Welcome): boolean => published !== null && Object.hasOwn(all, published);
+
 /** The published branches of a tube like this one, at the strain rate that is nearest to its own. */
 export function ghostsOf(tube: Welcome, { strain_rate, friction }: Driven): Ghost[] {
   const known = (all as Record<string, Ghost[]>)[tube.published ?? ""] ?? [];

@@ -8,7 +8,7 @@ export function showHeading(tube: Welcome): void {
   element("title").textContent = tube.title;
   const [ends, stands] = [tube.open ? "open ends" : "periodic", tube.unit_period === null];
   element("facts").textContent =
-    `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${stands ? "standing " : ""}${tube.waves === 1 ? "wave" : "waves"}, ${ends} · ${tube.control} control${extent(tube)}`;
+    `${tube.grains.toLocaleString("en")} ${tube.grains === 1 ? "grain" : "grains"} · ${tube.waves} ${stands ? "standing " : ""}${tube.waves === 1 ? "wave" : "waves"}, ${ends} · ${tube.control} control${extent(tube)}`;
   document.body.dataset.stands = String(stands);
   element("profile-name").textContent = stands ? "Along the tube" : "In the wave frame";
   element("direction-name").textContent = stands ? "outlet" : "wave";

@@ -113,9 +113,10 @@ function drawCourse(chart: Chart, rows: FilmRow[], { of }: Across, colours: Ink)
     chart.curve(piece, colour, 2.2, direction < 0 ? [5, 3] : []);
   };
   const far = farApart(rows);
+  const misses = (k: number) => rows.slice(Math.max(0, k - each), k).some(({ clock }, back) => rows[Math.max(0, k - each) + back + 1].clock - clock > far);
   for (let k = 0; k < rows.length; k += each) {
     // Rows that a slow page has missed: nothing is known of the way between.
-    if (each === 1 && k > 0 && rows[k].clock - rows[k - 1].clock > far) {
+    if (misses(k)) {
       finish();
       piece = [];
     }

@@ -3,6 +3,7 @@ import { type Connection, Engine, type Listener, Server, type Wanted } from "./c
 import { FIELDS, lacks } from "./fields";
 import { showField } from "./field-legend";
 import type { Film } from "./film";
+import { isPublished } from "./ghosts";
 import { History } from "./history";
 import { Host, isHosted } from "./host";
 import { showHeading } from "./heading";
@@ -117,7 +118,8 @@ class Page {
   }
 
   private welcome(tube: Welcome): void {
-    say("", false);
+    say(this.asked.damaged ? "This link is damaged: how its tube was steered cannot be read." : "", this.asked.damaged === true);
+    delete this.asked.damaged;
     delete document.body.dataset.lost;
     this.tube = tube;
     this.open(tube);
@@ -126,7 +128,7 @@ class Page {
     this.sliders.make(tube);
     showWithin(tube);
     this.contactsWanted();
-    if (this.asked.step) {
+    if (this.asked.step && this.engine) {
       this.connection.send({ type: "follow", turns: this.asked.turns ?? [], step: this.asked.step });
     } else if (this.asked.jump && !tube.recorded && tube.rows.length === 0) {
       this.connection.send({ type: "seek", period: this.asked.jump });
@@ -166,7 +168,7 @@ class Page {
     this.shownFrame = null;
     this.chartsStale = true;
     document.body.dataset.recorded = String(recorded !== null);
-    element("sweep-published").hidden = tube.published === null;
+    element("sweep-published").hidden = !isPublished(tube);
     if (recorded && FIELDS[this.field].ofContacts) this.field = "axial";
     offer(this.field, recorded !== null);
     element("loop-name").textContent = isSteady(this.film, tube) ? insteadOfLoop(tube).name : recorded ? "The loop, as it was driven" : "The loop";
@@ -328,7 +330,7 @@ class Page {
   }
 
   private listen(): void {
-    if (this.asked.field && this.asked.field in FIELDS) this.field = this.asked.field;
+    if (this.asked.field && Object.hasOwn(FIELDS, this.asked.field)) this.field = this.asked.field;
     listenToLooks(this.field, {
       field: (name) => {
         this.field = name;

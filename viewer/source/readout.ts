@@ -46,6 +46,7 @@ export class Readout {
   spaceTime = new SpaceTime();
   /** When the summary was told, and when and from which time the pace was measured. */
   private summarised = -SUMMARIES;
+  private summarising = 0;
   /** Whether it played then. */
   private played = false;
   private measuredFrom: [number, number] = [0, 0];
@@ -102,12 +103,15 @@ export class Readout {
     fill(element("numbers"), tube.recorded ? [...factsOfDrive(frame.driven), ...facts] : facts);
     fill(element("warnings"), frame.warnings.map(({ key, message }) => [key, message]));
     showGrain(frame, tube, scene?.picked ?? -1);
-    // At once where it starts or stops playing.
-    if (now - this.summarised > SUMMARIES || frame.playing !== this.played) {
-      this.played = frame.playing;
-      this.summarised = now;
-      element("summary").textContent = summaryOf(frame, tube, ratio);
-    }
+    // At once where it starts or stops playing; else a while after the last, for nothing may be drawn after this.
+    const wait = frame.playing !== this.played ? 0 : Math.max(0, SUMMARIES - (now - this.summarised));
+    const summary = summaryOf(frame, tube, ratio);
+    this.played = frame.playing;
+    clearTimeout(this.summarising);
+    this.summarising = window.setTimeout(() => {
+      this.summarised = performance.now();
+      element("summary").textContent = summary;
+    }, wait);
   }
 
   /** How fast it really goes, where that is not what was asked for. */

@@ -157,7 +157,7 @@ export class Scene {
   lookAs({ wall, eye, middle }: { wall?: string; eye?: number[]; middle?: number }): void {
     this.wall = WALLS.find((look) => look === wall) ?? this.wall;
     if (eye) this.eye = eye;
-    this.middle = middle ?? this.middle;
+    this.middle = this.folded(middle ?? this.middle);
   }
 
   /** Part of the full resolution that pictures which follow one another have. */
@@ -166,9 +166,14 @@ export class Scene {
   }
 
   slide(distance: number): void {
-    const { length, heading } = this.tube;
-    this.middle = (((this.middle + heading * distance) % length) + length) % length;
+    this.middle = this.folded(this.middle + this.tube.heading * distance);
     this.touch();
+  }
+
+  /** A place along the tube, from 0 to its length. */
+  private folded(place: number): number {
+    const { length } = this.tube;
+    return ((place % length) + length) % length;
   }
 
   touch(): void {

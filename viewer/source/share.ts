@@ -1,5 +1,5 @@
 import type { Connection } from "./connection";
-import { element, say } from "./page";
+import { element } from "./page";
 import type { Course, Turn } from "./protocol";
 import { NAMES } from "./sliders";
 
@@ -16,6 +16,8 @@ export interface Link {
   clock: number | null;
   /** Time in periods that is to be shown first, of a run that begins anew. */
   jump: number;
+  /** Whether it was steered in a way that cannot be read. */
+  damaged: boolean;
 }
 
 /** Seconds of a film. */
@@ -42,16 +44,15 @@ export function readLink(): Partial<Link> {
   }
   const turns = (parts.get("turns") ?? "").split(",").filter(Boolean).map((turn) => turn.split(":"));
   link.turns = turns.map(([at, parameter, value]) => [Number(at), parameter, Number(value)] as Turn);
-  const isWhole = ([at, parameter, value]: Turn) => Number.isFinite(at) && parameter in NAMES && Number.isFinite(value);
+  const isWhole = ([at, parameter, value]: Turn) => Number.isFinite(at) && Object.hasOwn(NAMES, parameter) && Number.isFinite(value);
   if (!link.turns.every(isWhole)) {
-    [link.turns, link.step] = [[], undefined];
-    say("This link is damaged: how its tube was steered cannot be read. The tube begins anew.", true);
+    [link.turns, link.step, link.damaged] = [[], undefined, true];
   }
   return link;
 }
 
 /** The address of this state. */
-export function linkOf(link: Omit<Link, "jump">, embedded = false): string {
+export function linkOf(link: Omit<Link, "jump" | "damaged">, embedded = false): string {
   const before = new URLSearchParams(location.hash.slice(1));
   const parts = new URLSearchParams();
   for (const name of ["preset", "set"]) for (const text of before.getAll(name)) parts.append(name, text);
@@ -125,7 +126,7 @@ async function copy(field: HTMLInputElement, button: HTMLElement): Promise<void>
 }
 
 /** What the address is made of, besides the course of the run. */
-type View = Omit<Link, "jump" | "turns" | "step" | "clock"> & { clock: number; playing: boolean };
+type View = Omit<Link, "jump" | "damaged" | "turns" | "step" | "clock"> & { clock: number; playing: boolean };
 
 /** Milliseconds that the address waits for more changes. */
 const KEEPING = 500;

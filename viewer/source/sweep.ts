@@ -1,5 +1,6 @@
 import type { Connection } from "./connection";
 import type { Film } from "./film";
+import { isPublished } from "./ghosts";
 import { element } from "./page";
 import type { Steered, Welcome } from "./protocol";
 
@@ -22,10 +23,11 @@ const WAYS: Record<Welcome["control"], [Steered, number, number]> = {
 const LEFT_OUT = 0.25;
 
 /** What is led, from where and to where, in a tube. */
-function wayOf({ control, ranges, published }: Welcome): [Steered, number, number] {
+function wayOf(tube: Welcome): [Steered, number, number] {
+  const { control, ranges } = tube;
   const [parameter, from, to] = WAYS[control];
   const range = ranges[parameter];
-  if (published || !range) return [parameter, from, to];
+  if (isPublished(tube) || !range) return [parameter, from, to];
   const [least, most] = range;
   const room = LEFT_OUT * (most - least);
   return control === "strain" ? [parameter, most, least + room] : [parameter, least, most - room];

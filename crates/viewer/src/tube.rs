@@ -310,16 +310,14 @@ impl Tube {
     /// The configuration with a duration beyond the present state, so that the saved run can go on.
     fn longer(&self) -> Configuration {
         let mut configuration = self.run.configuration().clone();
-        // A static wave has no periods that could be added.
-        if configuration.run.periods.is_some() {
-            let each = u64::from(configuration.observe.samples_per_period);
-            let taken = self.run.recorder().taken();
-            let samples = configuration.run.samples.max(taken + 10 * each);
-            let periods = samples as f64 / each as f64;
-            configuration.run.duration *= samples as f64 / configuration.run.samples as f64;
-            configuration.run.samples = samples;
-            configuration.run.periods = Some(periods);
-        }
+        let each = u64::from(configuration.observe.samples_per_period);
+        let run = &mut configuration.run;
+        let taken = self.run.recorder().taken();
+        let samples = run.samples.max(taken + 10 * each);
+        run.duration *= samples as f64 / run.samples as f64;
+        run.samples = samples;
+        // A static wave has none.
+        run.periods = run.periods.map(|_| samples as f64 / each as f64);
         configuration
     }
 

@@ -138,7 +138,7 @@ frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=lognor
 frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=two | grains.sizes | Inconsistent
 frictional | grains.diameter_min=1; grains.diameter_max=1; grains.sizes=two; grains.large_fraction=0.1 | grains.sizes | Inconsistent
 frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=table; grains.diameters=[0.6] | grains.sizes | Inconsistent
-frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=lognormal; grains.diameter_spread=0.2; grains.diameter_median=2 | grains.sizes | Inconsistent
+frictional | grains.diameter_min=0.5; grains.diameter_max=1; grains.sizes=lognormal; grains.diameter_spread=0.2; grains.diameter_median=2 | grains.diameter_median | Inconsistent
 ",
     );
     let file = std::env::temp_dir().join(format!("peristalsis-sizes-{}.csv", std::process::id()));

@@ -81,8 +81,8 @@ class Keywords(TypedDict, total=False):
     contact_surface_energy: float
     """contact.surface_energy. Surface energy gamma of JKR cohesion, half the work of adhesion: the force that parts
     two spheres is 3 pi gamma R_ij, R_ij the reduced radius. Needs the Hertz law. 0: none. Softer grains than the
-    real ones cling more: keep gamma/(Y^(2/3) d) or the pull-off force over the weight, whichever counts, as it is.
-    (Unit: m t^-2.)"""
+    real ones stick in faster impacts: gamma/Y^(2/5) kept as it is keeps the speed up to which they stick, gamma
+    alone the pull-off force. (Unit: m t^-2.)"""
     contact_tangential_damping: float
     contact_tangential_stiffness: float
     contact_young_modulus: float
@@ -216,9 +216,9 @@ class Keywords(TypedDict, total=False):
     material: Literal["glass", "sand", "steel", "pmma", "tablet"]
     """units.material. What the grains are made of: stands for units.density, contact.static_friction and
     kinetic_friction, the restitution (contact.restitution), and under contact.law = "hertz" for
-    contact.poisson_ratio and units.young_modulus. Values that the same file gives, or a later setting, hold
-    instead; of those of a preset only a modulus does. Grains as hard as the material take long: give a smaller
-    modulus."""
+    contact.poisson_ratio and units.young_modulus. They replace the values of a preset, except a Young's modulus.
+    Values that the same file gives, or a later setting, replace them. Grains as hard as the material take long:
+    give a smaller modulus."""
     natural_length: float
     """wall.natural_length. Natural length l of these springs; stress control. Default: 0.7 of the mean distance of
     lattice neighbours. An unstretched network buckles: keep it below the distance of neighbours. (Unit: d.)"""
@@ -265,8 +265,9 @@ class Keywords(TypedDict, total=False):
     """drive.radii. Radius at each phase. Only the shape counts: the largest becomes tube.radius, the least half of
     drive.width. (A pure number.)"""
     radius: float
-    """tube.radius. Mean radius a of the tube, to the centres of the wall spheres. The wall's surface, also of a
-    smooth wall, lies half of wall.sphere_diameter inside it. (Unit: d.)"""
+    """tube.radius. Radius a of the tube, to the centres of the wall spheres: the mean one of a sine, the largest of
+    other waveforms. The wall's surface, also of a smooth wall, lies half of wall.sphere_diameter inside it. (Unit:
+    d.)"""
     ramp_periods: float
     """drive.ramp_periods. Length of the ramp of schedule = "ramp", in wave periods. (Unit: periods.)"""
     restitution: float
@@ -281,8 +282,8 @@ class Keywords(TypedDict, total=False):
     rings_per_wave: SupportsIndex
     """tube.rings_per_wave. Rings in a wavelength. Staggered rings under strain control need an even number; under
     stress control an odd number needs an even number of waves. Random and disordered walls have as many spheres as
-    so many rings would have; a wall from a file does not use it. 0 in a smooth wall, where it is not given. (A pure
-    number.)"""
+    so many rings would have; a wall from a file does not use it. A smooth wall has none: there the key is left out,
+    and results show 0. (A pure number.)"""
     rise: float
     """drive.rise. Part of the period in which a segment closes; waveform = "segments". (Unit: periods.)"""
     rolling_damping: float
@@ -328,7 +329,8 @@ class Keywords(TypedDict, total=False):
     sphere_mass: float
     """wall.sphere_mass. Mass of a wall sphere; stress control. (Unit: m.)"""
     spheres_per_ring: SupportsIndex
-    """tube.spheres_per_ring. Wall spheres in a ring; 0 in a smooth wall, where it is not given. (A pure number.)"""
+    """tube.spheres_per_ring. Wall spheres in a ring. A smooth wall has none: there the key is left out, and results
+    show 0. (A pure number.)"""
     spring_damping: float
     """wall.spring_damping. Damping of each spring along its length; stress control. (Unit: m t^-1.)"""
     spring_stiffness: float
@@ -642,8 +644,8 @@ class Summary(_Rare):
     transition_threshold: float
     """J/Jmax whose crossing counts as the transition"""
     flow_rate_ratio: float
-    """late mean of J/Jmax of the grains inside; where the wave changes its speed or no grain is inside for a while,
-    late mean of J over that of Jmax"""
+    """late mean of J/Jmax of the grains inside. If the wave changes its speed, or no grain is inside for a while,
+    it is the late mean of J over the late mean of Jmax"""
     flow_rate_ratio_error: float
     """its standard error"""
     flow_rate_ratio_drift: float

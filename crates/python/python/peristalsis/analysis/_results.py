@@ -778,7 +778,8 @@ class ScatterLawFit:
     critical_width : Uncertain
         Critical width w_c; intervals normal in ln(w_c - largest width that saw a transition).
     exponent : Uncertain
-        alpha of tau ~ (w_c - w)^-alpha.
+        alpha of tau ~ (w_c - w)^-alpha. Intervals of alpha, q and beta are normal: where the largest width that saw a
+        transition is far from w_c, those of 95 per cent cover 87 to 90.
     scatter_exponent : Uncertain
         q of chi_tau/tau^2 ~ (w_c - w)^-q.
     variance_exponent : Uncertain
