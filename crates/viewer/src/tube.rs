@@ -310,14 +310,16 @@ impl Tube {
     /// The configuration with a duration beyond the present state, so that the saved run can go on.
     fn longer(&self) -> Configuration {
         let mut configuration = self.run.configuration().clone();
-        let each = u64::from(configuration.observe.samples_per_period);
-        let run = &mut configuration.run;
-        let taken = self.run.recorder().taken();
-        let samples = run.samples.max(taken + 10 * each);
-        run.duration *= samples as f64 / run.samples as f64;
-        run.samples = samples;
-        // A static wave has none.
-        run.periods = run.periods.map(|_| samples as f64 / each as f64);
+        // A static wave has no periods that could be added.
+        if configuration.run.periods.is_some() {
+            let each = u64::from(configuration.observe.samples_per_period);
+            let taken = self.run.recorder().taken();
+            let samples = configuration.run.samples.max(taken + 10 * each);
+            let periods = samples as f64 / each as f64;
+            configuration.run.duration *= samples as f64 / configuration.run.samples as f64;
+            configuration.run.samples = samples;
+            configuration.run.periods = Some(periods);
+        }
         configuration
     }
 
@@ -334,8 +336,15 @@ impl Tube {
             }
         };
         let place = folder.as_deref().unwrap_or(Path::new("FOLDER"));
+        let length = &self.run.configuration().run;
+        // A run that has reached its end needs a new one: `longer` gives it one, but to a standing wave.
+        let has_ended = length.periods.is_none() && self.step() >= length.steps();
+        let longer = match has_ended {
+            true => format!(" --duration {}", 2.0 * self.run.simulation().time().ceil()),
+            false => String::new(),
+        };
         let saved = Notice::Saved {
-            command: format!("peristalsis run --resume {}", shell_word(place)),
+            command: format!("peristalsis run --resume {}{longer}", shell_word(place)),
             folder: folder.map(|folder| folder.display().to_string()),
             toml,
             repeats: (self.course.turns().iter()).all(|turn| turn.parameter != Steered::Friction),

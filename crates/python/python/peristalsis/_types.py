@@ -508,9 +508,10 @@ class ThroatSummary(TypedDict):
     density: float
     """late mean of the grains per length of tube in about a fifth of the wavelength where it is narrowest [1/d]"""
     axial_velocity: float
-    """mean axial velocity along the wave there [d/t]"""
+    """mean over the grains there of the velocity of their bins along the wave [d/t]"""
     granular_temperature: float
-    """granular temperature there, about the velocity of the centre of mass [m d^2/t^2]"""
+    """granular temperature of the bins there, mean over the grains, each about the mean velocity of its bin: the
+    smaller, the fewer grains a bin has [m d^2/t^2]"""
 
 
 class BellySummary(TypedDict):
@@ -702,7 +703,7 @@ class Summary(_Rare):
     narrow_tangential_force_error: float
     """its standard error [m d/t^2]"""
     narrow_axial_velocity: float
-    """late mean axial velocity of the grains there, laboratory frame [d/t]"""
+    """late mean axial velocity there, laboratory frame: of the mass, not of the number of grains [d/t]"""
     narrow_axial_velocity_error: float
     """its standard error [d/t]"""
     narrow_wall_velocity: float
@@ -710,8 +711,8 @@ class Summary(_Rare):
     narrow_wall_velocity_error: float
     """its standard error [d/t]"""
     front_normal_force: float
-    """part of wall_normal_force in the front of the wave, from its narrowest place to the widest one ahead [m
-    d/t^2]"""
+    """part of wall_normal_force in the front of the wave: in the bins of the profile from that of its narrowest
+    place on, up to that of the widest one ahead, without it [m d/t^2]"""
     front_normal_force_error: float
     """its standard error [m d/t^2]"""
     front_tangential_force: float

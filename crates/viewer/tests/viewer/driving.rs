@@ -153,6 +153,21 @@ fn a_state_beyond_the_end_of_its_run_has_something_to_go_on_with() {
     assert_eq!(run.configuration().run.periods, Some(11.5));
 }
 
+/// A viewer's user: the command beside a saved state did nothing where the wave stood and the run had ended.
+#[test]
+fn the_command_for_a_standing_wave_beyond_its_end_makes_it_longer() {
+    let settings = ["tube.waves=2", "drive.strain_rate=0", "run.duration=1"];
+    let served = Served::new("frictionless", &settings);
+    let (mut client, _) = served.client();
+    for (clock, ending) in [(0.5, "tube-1"), (1.5, "tube-2 --duration 4")] {
+        client.send(&format!(r#"{{"type":"seek","period":{clock}}}"#));
+        client.frame_with(|head| head["clock"].as_f64().unwrap() >= clock);
+        client.send(r#"{"type":"save"}"#);
+        let command = client.notice()["command"].to_string();
+        assert!(command.trim_matches('"').ends_with(ending), "{command}");
+    }
+}
+
 /// VIEWER, critical 3: three drags of a slider lie between the mark and the time that is shown.
 #[test]
 fn going_back_steers_again_as_it_was_steered() {
