@@ -100,8 +100,8 @@ export function drawLoop(chart: Chart, film: Film, tube: Welcome, frame: Frame, 
   return found;
 }
 
-/** Time between two rows above which some are missing. */
-export const farApart = (rows: FilmRow[]): number => 1 + 0.003 * (rows.at(-1)?.clock ?? 0);
+/** Time between two rows above which some are missing, of rows that end at a time. */
+export const farApart = (end: number): number => 1 + 0.003 * end;
 
 /** Which way the parameter went last decides how a piece is drawn: full upwards, dashed downwards. */
 function drawCourse(chart: Chart, rows: FilmRow[], { of }: Across, colours: Ink): void {
@@ -112,14 +112,13 @@ function drawCourse(chart: Chart, rows: FilmRow[], { of }: Across, colours: Ink)
     const colour = direction > 0 ? colours.along : direction < 0 ? colours.against : colours.faint;
     chart.curve(piece, colour, 2.2, direction < 0 ? [5, 3] : []);
   };
-  const far = farApart(rows);
-  const misses = (k: number) => rows.slice(Math.max(0, k - each), k).some(({ clock }, back) => rows[Math.max(0, k - each) + back + 1].clock - clock > far);
-  for (let k = 0; k < rows.length; k += each) {
+  const far = farApart(rows.at(-1)?.clock ?? 0);
+  for (let k = 0; k < rows.length; k++) {
     // Rows that a slow page has missed: nothing is known of the way between.
-    if (misses(k)) {
+    if (k > 0 && rows[k].clock - rows[k - 1].clock > far) {
       finish();
       piece = [];
-    }
+    } else if (k % each > 0) continue;
     const step = of(rows[k]) - of(rows[before]);
     const now = Math.abs(step) < 1e-9 ? direction : Math.sign(step);
     if (now !== direction) {

@@ -2,6 +2,7 @@ import { type Chart, type Entry, type Ink, written } from "./charts";
 import { colourAt, type Field, inWave, speedOf, stops } from "./fields";
 import type { Film } from "./film";
 import { insideOf } from "./inside";
+import { farApart } from "./loop";
 import { type Frame, type Row, timeAxis, unitOfTime, type Welcome } from "./protocol";
 
 /** Frames and periods that a profile is averaged over at most, and looks at grains after which fewer frames do. */
@@ -56,7 +57,7 @@ function between(points: [number, number][], x: number): number {
 /** At most some thousand points; none between two that are so far apart that rows between them were missed. */
 function sparse(points: [number, number][]): [number, number][] {
   const each = Math.ceil(points.length / 3000);
-  const far = 1 + 0.003 * (points.at(-1)?.[0] ?? 0);
+  const far = farApart(points.at(-1)?.[0] ?? 0);
   return points.flatMap((point, k): [number, number][] => {
     const kept: [number, number][] = k % each === 0 ? [point] : [];
     return k > 0 && point[0] - points[k - 1][0] > far ? [[point[0], NaN], point] : kept;

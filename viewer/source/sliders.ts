@@ -23,13 +23,13 @@ function stepOf([from, to]: [number, number]): number {
 const decimals = (range: [number, number], usual: number): number => Math.max(usual, -Math.floor(Math.log10(stepOf(range))));
 
 /** A value with so many decimals, and three significant digits at least. */
-const written = (value: number, digits: number): string =>
+const inDecimals = (value: number, digits: number): string =>
   value.toFixed(value === 0 ? digits : Math.min(100, Math.max(digits, 2 - Math.floor(Math.log10(Math.abs(value))))));
 
 /** Puts a slider to a value, which may lie between its steps, and says it as the number beside it does. */
 function put(slider: HTMLInputElement, value: number, digits: number): void {
   slider.value = String(value);
-  slider.setAttribute("aria-valuetext", written(value, digits));
+  slider.setAttribute("aria-valuetext", inDecimals(value, digits));
 }
 
 /** The sliders that steer a run. */
@@ -58,7 +58,7 @@ export class Sliders {
       let known = "";
       const steer = (value: number) => {
         const within = Math.min(range[1], Math.max(range[0], value));
-        known = number.value = written(within, digits);
+        known = number.value = inDecimals(within, digits);
         put(slider, Number(known), digits);
         this.steered(key, Math.min(range[1], Math.max(range[0], Number(known))));
       };
@@ -95,7 +95,7 @@ export class Sliders {
       const aim = aims[key] ?? value;
       const digits = this.digits[key] ?? NAMES[key].digits;
       if (!slider.matches(":active")) put(slider, aim, digits);
-      if (number !== document.activeElement) number.value = written(aim, digits);
+      if (number !== document.activeElement) number.value = inDecimals(aim, digits);
     }
   }
 }

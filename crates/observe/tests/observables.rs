@@ -171,6 +171,10 @@ fn the_profile_of_an_open_tube_is_that_between_its_ends() {
         }
         let grains: f64 = bins.iter().map(|bin| bin.density.0).sum();
         assert_eq!(grains, if heading > 0.0 { 5.0 } else { 3.0 });
+        // Without grains nothing is known of a bin.
+        for bin in &bins {
+            assert_eq!(bin.temperature.0.is_finite(), bin.density.0 > 0.0);
+        }
     }
 }
 

@@ -82,7 +82,7 @@ impl Head {
             time: simulation.time(),
             clock: Timeline(run.configuration()).clock(simulation.time()),
             period: wall.cycles(),
-            wave_speed: wall.frequency(simulation.time()) * wall.wavelength(),
+            wave_speed: wall.wave_speed(simulation.time()),
             grains: simulation.bodies().grains,
             wall_spheres,
             rings,

@@ -25,6 +25,8 @@ fn a_finished_run_is_drawn_from_every_side() {
     place
         .does(section)
         .shows(&["64 x 64 pixels of t = ", "section.png"]);
+    let nowhere = section.replace("0.25", "nan");
+    place.refuses(&nowhere, &["there is no position NaN"]);
     for options in [
         "--format svg --colour coordination --wall glass --paper dark",
         "--at 1.3 --colour axial-displacement --out displaced.png",

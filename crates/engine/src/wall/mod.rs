@@ -153,6 +153,11 @@ impl Wall {
         }
     }
 
+    /// Speed c of the wave at `time` \[d/t\].
+    pub fn wave_speed(&self, time: f64) -> f64 {
+        self.frequency(time) * self.wavelength()
+    }
+
     /// Largest radius that the tube is expected to reach, to the centres \[d\].
     pub fn usual_radius(&self) -> f64 {
         match self {

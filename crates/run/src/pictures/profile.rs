@@ -183,7 +183,39 @@ pub(super) fn wall(run: &Run) -> Result<Drawing, FigureError> {
 
 #[cfg(test)]
 mod tests {
+    use peristalsis_configuration::Configuration;
+
     use super::*;
+
+    /// A pump engineer: a profile was told over the speed of a strain rate that the schedule had left.
+    #[test]
+    fn the_late_speed_of_a_wave_is_that_of_its_schedule() {
+        for (schedule, expected) in [
+            ("", 0.1),
+            (
+                "{form='steps',parameter='strain_rate',at=[0],values=[0.04]}",
+                0.4,
+            ),
+            (
+                "{form='steps',parameter='strain_rate',at=[2],values=[0.0]}",
+                0.0,
+            ),
+        ] {
+            let course = format!("drive.schedule={schedule}");
+            let mut settings = vec!["grains.number=5", "tube.waves=1", "drive.strain_rate=0.01"];
+            settings.extend(["run.periods=4", "observe.late_fraction=0.5"]);
+            if !schedule.is_empty() {
+                settings.push(&course);
+            }
+            let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+            let mut run = Run::new(configuration).unwrap();
+            while !run.is_complete() {
+                run.advance().unwrap();
+            }
+            let speed = late_wave_speed(&run);
+            assert!((speed - expected).abs() < 1e-12, "{schedule}: {speed}");
+        }
+    }
 
     /// COMMAND-LINE, low: T_g had no unit.
     #[test]

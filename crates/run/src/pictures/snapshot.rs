@@ -90,8 +90,8 @@ fn unit_of_speed(runs: &[(&str, &Run)]) -> (String, Option<f64>) {
 
 /// Speed of the wave now \[d/t\].
 fn wave_speed(run: &Run) -> f64 {
-    let (wall, time) = (run.simulation().wall(), run.simulation().time());
-    wall.frequency(time) * wall.wavelength()
+    let simulation = run.simulation();
+    simulation.wall().wave_speed(simulation.time())
 }
 
 /// |v_z| of the fastest grain \[d/t\].
@@ -203,12 +203,18 @@ mod tests {
 
     #[test]
     fn velocities_are_told_over_that_of_the_wave_or_of_the_fastest_grain() {
-        for (rate, told) in [("0.05", "*c*"), ("0", "(0.2 *d*/")] {
+        let stops = "{form='steps',parameter='strain_rate',at=[0],values=[0]}";
+        for (rate, schedule, told) in [
+            ("0.05", "'sudden'", "*c*"),
+            ("0", "'sudden'", "(0.2 *d*/"),
+            ("0.05", stops, "(0.2 *d*/"),
+        ] {
             let settings = [
                 "grains.number=20",
                 "run.duration=1",
                 "body.gravity=[0, 0, -0.2]",
                 &format!("drive.strain_rate={rate}"),
+                &format!("drive.schedule={schedule}"),
             ];
             let configuration =
                 Configuration::from_preset("frictionless", &settings.map(str::to_owned));

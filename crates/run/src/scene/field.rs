@@ -179,7 +179,7 @@ impl Coloured {
         }
         let heading = wall.heading();
         let wavelength = wall.wavelength();
-        let speed = match wall.frequency(frame.time) * wavelength {
+        let speed = match wall.wave_speed(frame.time) {
             _ if !self.is_moving => 1.0,
             speed if speed > 0.0 => speed,
             _ => f64::NAN,

@@ -317,6 +317,6 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// Late mean.
-fn mean_of(late: &[Sample], value: impl Fn(&Sample) -> f64) -> f64 {
+pub(crate) fn mean_of(late: &[Sample], value: impl Fn(&Sample) -> f64) -> f64 {
     late.iter().map(value).sum::<f64>() / late.len() as f64
 }

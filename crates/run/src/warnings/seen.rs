@@ -11,6 +11,7 @@ use super::softness::{LARGEST_OVERLAP, Material};
 use super::threshold;
 use super::warning::Warning;
 use crate::run::Run;
+use crate::summary::mean_of;
 
 /// Overlap over diameter above which soft spheres no longer pass for solid grains, where no units say of what material they
 /// are.
@@ -154,10 +155,7 @@ fn emptied(run: &Run) -> Option<Warning> {
     // A grain of mass m has the volume pi m/6.
     let filled = PI / 6.0 * last.hold_up / clear;
     let (before, after) = late.split_at(late.len() / 2);
-    let held = |samples: &[Sample]| {
-        let held = samples.iter().map(|sample| sample.hold_up);
-        held.sum::<f64>() / samples.len() as f64
-    };
+    let held = |samples: &[Sample]| mean_of(samples, |sample| sample.hold_up);
     let message = format!(
         "grains fill {:.0} % of the tube and no more, though {} wait: the outlet lets out what the inlet puts in, and could let \
          out more; take a larger inlet.velocity ({}) and a longer inlet.length ({})",

@@ -122,7 +122,7 @@ impl Recording {
             time: frame.time,
             clock,
             period: frame.value("period").unwrap_or(clock),
-            wave_speed: self.wall.frequency(frame.time) * self.wall.wavelength(),
+            wave_speed: self.wall.wave_speed(frame.time),
             grains: frame.grains,
             wall_spheres,
             rings,
