@@ -356,7 +356,7 @@ class Page {
     element("save").onclick = () => this.tube?.recorded === null && this.connection.send({ type: "save" });
     element("help").onclick = () => element<HTMLDialogElement>("keys").showModal();
     element("onward").onclick = () => void this.goOn(this.film.clock(this.playback.shown), "Go on from here?", "go on from here");
-    element("again").onclick = () => void this.goOn(0, "Begin anew?", "from the start");
+    element("again").onclick = () => void this.goOn(this.tube?.begin ?? 0, "Begin anew?", "from the start");
     element("sweep").onclick = () => (this.sweep.isGoing ? this.sweep.end() : this.tube && !this.newest()?.ended && this.sweep.begin(this.tube));
     listenToShare(this.address, () => this.tube?.title ?? "tube", () => this.scene?.touch());
     for (const kind of ["png", "svg", "csv"] as const) element(`loop-${kind}`).onclick = () => this.tube && this.shownFrame && giveLoop(kind, this.readout.charts.loop, this.film, this.tube, this.shownFrame);

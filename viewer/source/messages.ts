@@ -33,6 +33,8 @@ export type Welcome = {
   record: Array<[number, number | null]>,
   /** The time series since the viewer began, or of a recording. */
   rows: Array<Row>,
+  /** Time in periods of the state that the viewer began with. */
+  begin: number,
   /** Duration of the run in periods. */
   end: number,
   /** Samples after which a watched run stops. */

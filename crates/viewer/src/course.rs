@@ -29,6 +29,11 @@ impl Course {
         }
     }
 
+    /// Steps before the first mark.
+    pub(crate) fn first_step(&self) -> u64 {
+        self.marks[0].0.step()
+    }
+
     /// How the run was steered so far.
     pub(crate) fn turns(&self) -> &[Turn] {
         &self.turns

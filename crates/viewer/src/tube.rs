@@ -129,6 +129,8 @@ impl Tube {
         welcome.driven = Driven::of(&self.run);
         welcome.record = thin(record.map(|&(time, ratio)| (timeline.clock(time), ratio)));
         welcome.within = self.labels.within.clone();
+        let begin = self.course.first_step() as f64 * configuration.run.time_step;
+        welcome.begin = timeline.clock(begin);
         welcome.rows = history(rows(&self.run, 0));
         welcome.to_json()
     }

@@ -50,6 +50,8 @@ pub(crate) struct Welcome {
     pub(crate) record: Vec<(f64, f64)>,
     /// The time series since the viewer began, or of a recording.
     pub(crate) rows: Vec<Row>,
+    /// Time in periods of the state that the viewer began with.
+    pub(crate) begin: f64,
     /// Duration of the run in periods.
     end: f64,
     /// Samples after which a watched run stops.
@@ -189,6 +191,7 @@ impl Welcome {
             published: published(configuration),
             record: Vec::new(),
             rows: Vec::new(),
+            begin: 0.0,
             end: timeline.clock(end),
             most_samples: MOST_ROWS,
             recorded: None,

@@ -37,7 +37,11 @@ pub(crate) struct Served {
 
 impl Served {
     pub(crate) fn new(preset: &str, settings: &[&str]) -> Self {
-        let configuration = configuration(preset, settings);
+        Self::of(Run::new(configuration(preset, settings)).unwrap())
+    }
+
+    /// Goes on with a run.
+    pub(crate) fn of(run: Run) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let options = Options {
             port: 0,
@@ -45,7 +49,7 @@ impl Served {
             saves: folder.path().join("saves"),
             record: Vec::new(),
         };
-        let viewer = Viewer::open(Run::new(configuration).unwrap(), options).unwrap();
+        let viewer = Viewer::open(run, options).unwrap();
         Self::serve(viewer, folder)
     }
 

@@ -1,8 +1,8 @@
 //! A run that is played, driven, gone back in and saved.
 
-use peristalsis_run::RunFolder;
+use peristalsis_run::{Run, RunFolder};
 
-use crate::client::{Served, holds};
+use crate::client::{Served, configuration, holds};
 
 #[test]
 fn a_client_is_welcomed_and_sees_the_tube() {
@@ -138,6 +138,20 @@ fn a_saved_state_goes_on_from_the_command_line() {
     assert_eq!(run.simulation().step(), onward.head["step"]);
     let there = run.simulation().bodies().position[0].to_array();
     assert_eq!(there.map(|it| it as f32), onward.numbers[..3]);
+}
+
+/// A viewer's user: "from the start" asked whether what came after 0.00 T may go, and went back to the state.
+#[test]
+fn a_viewer_of_a_saved_state_tells_the_time_of_its_start() {
+    let mut run = Run::new(configuration("frictionless", &["tube.waves=2"])).unwrap();
+    for _ in 0..30 {
+        run.advance().unwrap();
+    }
+    let served = Served::of(run);
+    let (mut client, welcome) = served.client();
+    assert_eq!(welcome["begin"], 1.5);
+    client.send(r#"{"type":"seek","period":1}"#);
+    client.frame_with(|head| head["clock"] == 1.5);
 }
 
 #[test]
