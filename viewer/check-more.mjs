@@ -218,6 +218,32 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     void closeDark;
   }
 
+  /** What a viewer's user met: links that hung or broke the page, and a sweep that spoke of published runs of another tube. */
+  async function checkLinks(browser) {
+    const { address, end } = await serve("frictionless", "--set", "tube.waves=2");
+    const damaged = /This link is damaged: how its tube was steered cannot be read/;
+    for (const [link, told] of [["at=1e300", null], ["at=-1e9", null], ["field=constructor&wall=toString", null], ["eye=1e300,0,0", null],
+      ["turns=0:width:wide&step=100", damaged], ["turns=0:constructor:2&step=100", damaged]]) {
+      const { page, close } = await open(browser, `${address}#${link}`, desk);
+      if (told) assert.match(await page.textContent("#status"), told, link);
+      const { pictures } = await measured(page);
+      await page.click("#play");
+      await until(page, (pictures) => window.viewer.measured.pictures > pictures + 3, pictures);
+      await page.click("#play");
+      assert(await page.isVisible("#sweep-published"));
+      await close();
+    }
+    end();
+    const other = await serve("frictionless", "--set", "tube.waves=2", "--set", "tube.radius=4", "--set", "drive.width=3.4");
+    const { page, close } = await open(browser, other.address, desk);
+    assert(!(await page.isVisible("#sweep-published")));
+    // It begins at the wide end, where such a tube is not clogged.
+    await page.click("#sweep");
+    await until(page, () => window.viewer.shownFrame?.aims.width > 3.4);
+    await close();
+    other.end();
+  }
+
   /** An open tube whose wave stands: no flow rate over the largest, no periods, no images. */
   async function checkOpen(browser) {
     const { address, end } = await serve("silo", "--set", "grains.number=700", "--set", "inlet.waiting=200");
@@ -590,6 +616,6 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     end();
   }
 
-  return { more: checkMore, open: checkOpen, lost: checkLost, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
+  return { more: checkMore, links: checkLinks, open: checkOpen, lost: checkLost, bare: checkBare, numbers: checkNumbers, studies: checkStudies, front: checkFront,
     ...widgetChecks({ serve, until, shoot, desk }) };
 }

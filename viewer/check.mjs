@@ -22,7 +22,7 @@ const { values, positionals } = parseArgs({
 });
 const [program] = positionals;
 const { pictures, only } = values;
-assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,numbersWithErrors,thresholds,web,many,more,open,lost,bare,numbers,studies,front,widget]");
+assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,numbersWithErrors,thresholds,web,many,more,links,open,lost,bare,numbers,studies,front,widget]");
 const saves = mkdtempSync(join(tmpdir(), "peristalsis-viewer-"));
 const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
