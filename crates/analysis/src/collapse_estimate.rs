@@ -64,7 +64,15 @@ impl<'a> Collapse<'a> {
     /// A side that the points leave open is infinite.
     ///
     /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of it,
-    /// by random numbers of `seed`. Without a correction the errors hold only where the data have none: a small correction shifts
+    /// by random numbers of `seed`.
+    ///
+    /// `known` are parameters known from elsewhere, by their place: normal numbers that count as points beside the others.
+    /// They serve critical widths that were fitted to each curve before. The scaling leaves them free
+    /// ([`Scaling::CriticalEach`](crate::Scaling::CriticalEach), w_c of curve k at place 2 + k) and `known` gives them with
+    /// their errors: the error of one w_c then moves all points of its curve together, whereas an error added to every
+    /// point counts many times over and makes S too small. `quality` is S at the best, the curves moved within those errors.
+    ///
+    /// Without a correction the errors hold only where the data have none: a small correction shifts
     /// the exponents, and the fit still looks good. The fit is therefore compared with fits that allow for c = -1 and 1. It
     /// is not trusted where one of them may take a parameter out of its interval of 95 per cent, nor where a common curve of
     /// three times as many knots does: it then bends too sharply for them. Look at
@@ -72,8 +80,9 @@ impl<'a> Collapse<'a> {
     ///
     /// # Errors
     /// [`Error::NoOverlap`] with the best overlap where no start finds enough, [`Error::TooFew`] below 2 curves, without
-    /// starts or with fewer points than curve and parameters need, [`Error::LengthMismatch`], [`Error::NonFinite`],
-    /// [`Error::NotPositive`] for a step, or for a parameter of a curve with a correction, [`Error::Fraction`],
+    /// starts or with fewer points than curve and parameters need, [`Error::LengthMismatch`] for steps or a place of `known`
+    /// beyond the parameters, [`Error::NonFinite`], [`Error::NotPositive`] for a step, the error of a known parameter, or a
+    /// parameter of a curve with a correction, [`Error::Fraction`],
     /// [`Error::Undetermined`] where the search does not settle.
     ///
     /// ```
@@ -93,35 +102,12 @@ impl<'a> Collapse<'a> {
     ///     },
     ///     least_overlap: 0.5,
     /// };
-    /// let found = collapse.estimate(&[0.8], &[0.2], 4, 0, Some(1.0))?;
+    /// let found = collapse.estimate(&[], &[0.8], &[0.2], 4, 0, Some(1.0))?;
     /// assert!((found.parameters[0].value - 1.0).abs() < 1e-2);
     /// assert!(found.trusted, "{:?}", found.doubts);
     /// # Ok::<(), peristalsis_analysis::Error>(())
     /// ```
     pub fn estimate(
-        &self,
-        start: &[f64],
-        steps: &[f64],
-        starts: usize,
-        seed: u64,
-        correction: Option<f64>,
-    ) -> Result<CollapseEstimate, Error> {
-        self.estimate_knowing(&[], start, steps, starts, seed, correction)
-    }
-
-    /// The same with parameters known from elsewhere, by their place: normal numbers that count as points beside the
-    /// others.
-    ///
-    /// Serves critical widths that were fitted to each curve before. The scaling leaves them free
-    /// ([`Scaling::CriticalEach`](crate::Scaling::CriticalEach), w_c of curve k at place 2 + k) and `known` gives them with
-    /// their errors: the error of one w_c then moves all points of its curve together, whereas an error added to every
-    /// point counts many times over and makes S too small. `quality` is S at the best, the curves moved within those
-    /// errors.
-    ///
-    /// # Errors
-    /// Those of [`estimate`](Self::estimate); [`Error::LengthMismatch`] for a place beyond the parameters,
-    /// [`Error::NotPositive`] for an error of a known one.
-    pub fn estimate_knowing(
         &self,
         known: &[(usize, Uncertain)],
         start: &[f64],

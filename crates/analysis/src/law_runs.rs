@@ -34,28 +34,6 @@ pub struct LawRunsFit {
     pub censored: usize,
 }
 
-impl LawRunsFit {
-    /// Free parameters.
-    pub fn parameters(&self) -> usize {
-        self.law.parameters_with(self.family)
-    }
-
-    /// Akaike's criterion 2 p - 2 ln L, comparable between laws and families on the same runs.
-    pub fn akaike(&self) -> f64 {
-        2.0 * self.parameters() as f64 - 2.0 * self.log_likelihood
-    }
-
-    /// Mean transition time at a width; infinite from w_c on.
-    pub fn mean(&self, width: f64) -> f64 {
-        let critical = self.critical_width.map_or(f64::INFINITY, |w| w.value);
-        if width >= critical {
-            return f64::INFINITY;
-        }
-        let x = self.law.covariate(width, critical);
-        libm::exp(self.ln_amplitude + self.exponent.value * x)
-    }
-}
-
 /// A law fitted to the runs within a window of widths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WindowRunsFit {

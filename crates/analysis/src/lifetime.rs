@@ -35,12 +35,6 @@ pub struct LifetimeFit {
 }
 
 impl LifetimeFit {
-    /// Akaike's criterion, 2 p - 2 ln L: of two families the one with the smaller value is nearer to the truth; a
-    /// difference below 2 decides nothing. Source: Akaike, IEEE Trans. Autom. Control 19, 716 (1974).
-    pub fn akaike(&self) -> f64 {
-        2.0 * self.family.parameters() as f64 - 2.0 * self.log_likelihood
-    }
-
     /// `chi_tau/<tau>^2` of a gamma distribution, 1/k; `None` for the other families.
     pub fn relative_variance(&self) -> Option<Uncertain> {
         let shape = self.shape.filter(|_| self.family == Family::Gamma)?;

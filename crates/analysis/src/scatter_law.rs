@@ -50,21 +50,6 @@ pub struct ScatterLawFit {
     pub censored: usize,
 }
 
-impl ScatterLawFit {
-    /// Mean transition time and relative variance at a width below w_c; infinite from there on.
-    pub fn at(&self, width: f64) -> (f64, f64) {
-        let distance = self.critical_width.value - width;
-        if distance <= 0.0 {
-            return (f64::INFINITY, f64::INFINITY);
-        }
-        let ln_distance = libm::log(distance);
-        (
-            libm::exp(self.ln_amplitude - self.exponent.value * ln_distance),
-            libm::exp(self.ln_scatter - self.scatter_exponent.value * ln_distance),
-        )
-    }
-}
-
 /// Likelihood of gamma distributions whose shape changes toward w_c, on the runs of the likelihood with one shape.
 struct ScatterLikelihood<'a>(&'a LawLikelihood);
 
@@ -304,9 +289,11 @@ mod tests {
             here += (found.exponent.value - 1.0) / trials as f64;
             let shared = fit_law_to_runs(Law::Power, Family::Gamma, &width, &runs);
             common += shared.map_or(1.0, |fit| fit.exponent.value - 1.0) / trials as f64;
-            let (mean, relative_variance) = found.at(2.5);
+            let distance = found.critical_width.value - 2.5;
+            let at = |amplitude: f64, exponent: f64| amplitude.exp() * distance.powf(-exponent);
+            let mean = at(found.ln_amplitude, found.exponent.value);
+            let relative_variance = at(found.ln_scatter, found.scatter_exponent.value);
             assert!((mean * 0.03 - 1.0).abs() < 0.4 && relative_variance < 0.3);
-            assert_eq!(found.at(3.5), (f64::INFINITY, f64::INFINITY));
             assert_eq!(found.observed + found.censored, 200);
         }
         assert!(here.abs() < 0.06, "{here}");

@@ -200,12 +200,6 @@ impl TransitionDetector {
         }
     }
 
-    /// Time of a crossing that the periods to come may yet confirm.
-    pub fn candidate(&self) -> Option<f64> {
-        let pending = self.crossing.filter(|_| !self.is_complete());
-        pending.map(|crossing| crossing.time)
-    }
-
     /// Whether the transition has been found, so that a run need not go on for its sake.
     pub fn is_complete(&self) -> bool {
         self.crossing
@@ -312,19 +306,14 @@ mod tests {
     }
 
     #[test]
-    fn a_crossing_under_way_is_a_candidate_until_it_is_confirmed_or_falls_back() {
+    fn a_crossing_that_falls_back_is_forgotten_and_the_next_one_is_confirmed() {
         let mut detector = TransitionDetector::new(Direction::Upward, 0.5, 2.0).unwrap();
-        let mut candidates = Vec::new();
-        for average in [0.0, 1.0, 0.0, 1.0, 1.0, 1.0] {
+        let completes = [0.0, 1.0, 0.0, 1.0, 1.0, 1.0].map(|average| {
             detector.push(average).unwrap();
-            candidates.push(detector.candidate());
-        }
-        assert_eq!(
-            candidates,
-            [None, Some(2.0), None, Some(6.0), Some(6.0), None]
-        );
-        assert!(detector.is_complete());
-        assert_eq!(detector.periods, 6);
+            detector.is_complete()
+        });
+        assert_eq!(completes, [false, false, false, false, false, true]);
+        assert_eq!(detector.outcome().observed(), Some(6.0));
     }
 
     #[test]

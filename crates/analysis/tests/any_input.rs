@@ -152,17 +152,13 @@ proptest! {
         let _ = fit_shifted_exponential(&runs);
         let families = [Family::Exponential, Family::Gamma, Family::Weibull];
         for family in families {
-            if let Ok(fit) = fit_lifetime(family, &runs) {
-                let _ = fit.akaike();
-            }
+            let _ = fit_lifetime(family, &runs);
             let _ = ensembles_by_width(family, &width, &runs);
         }
         let laws = [Law::Power, Law::Barrier { power: 2.0 }, Law::Exponential];
         for law in laws {
             for family in [Family::Exponential, Family::Gamma] {
-                if let Ok(fit) = fit_law_to_runs(law, family, &width, &runs) {
-                    let _ = (fit.mean(horizon), fit.akaike());
-                }
+                let _ = fit_law_to_runs(law, family, &width, &runs);
             }
             let _ = fit_law_to_runs_in_windows(law, Family::Exponential, &width, &runs);
         }
@@ -242,12 +238,12 @@ proptest! {
             };
             let collapse = Collapse { curves: &curves, transform: &transform, least_overlap: 0.2 };
             let (start, steps) = (vec![start; count], vec![step; count]);
-            if let Ok(found) = collapse.estimate(&start, &steps, 1, 0, Some(1.0)) {
+            if let Ok(found) = collapse.estimate(&[], &start, &steps, 1, 0, Some(1.0)) {
                 prop_assert!(found.quality.overlap >= 0.2);
                 let _ = collapse.joint_test(&[], &found, &steps, &[(0, start[0]), (1, at)]);
             }
             let known = [(0, Uncertain::normal(at, steps[0]))];
-            let _ = collapse.estimate_knowing(&known, &start, &steps, 1, 0, None);
+            let _ = collapse.estimate(&known, &start, &steps, 1, 0, None);
         }
     }
 }
@@ -300,7 +296,7 @@ proptest! {
         };
         let collapse = Collapse { curves: &curves, transform: &transform, least_overlap: 0.3 };
         let steps = [0.3, 0.3, 0.3, 0.1];
-        if let Ok(found) = collapse.estimate(&[1.0, 1.0, 0.0, 3.1], &steps, 1, 0, None) {
+        if let Ok(found) = collapse.estimate(&[], &[1.0, 1.0, 0.0, 3.1], &steps, 1, 0, None) {
             prop_assert!(found.stretch >= 1.0 && found.quality.overlap >= 0.3);
         }
     }

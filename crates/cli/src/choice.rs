@@ -7,10 +7,53 @@ use peristalsis_run::Field::{
 };
 use peristalsis_run::FilmFormat::{Apng, Gif, Mp4, Webm};
 use peristalsis_run::TrajectoryFormat::{Gsd, Lammps, Vtp};
-use peristalsis_run::{Eye, Field, FilmFormat, Paper, TrajectoryFormat, WallLook};
+use peristalsis_run::{Aspect, Eye, Field, FilmFormat, Paper, Place, TrajectoryFormat, WallLook};
 
 /// A value of an option: its name, the value itself, and its meaning in a few words.
 pub type Choice<T> = (&'static str, T, &'static str);
+
+/// From where a tube is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// From the side.
+    Side,
+    /// Cut across, along the axis.
+    Section,
+    /// No picture of the tube: the flow rate of each wave against time.
+    SpaceTime,
+}
+
+/// From where a tube is looked at.
+pub const VIEWS: &[Choice<View>] = &[
+    ("side", View::Side, "from the side"),
+    ("section", View::Section, "cut across, along the axis"),
+    (
+        "space-time",
+        View::SpaceTime,
+        "flow rate of each wave against time",
+    ),
+];
+
+impl View {
+    /// How the tube is drawn; a section is at `middle` unless it has a place or a position.
+    pub fn aspect(self, place: Option<f64>, position: Option<f64>, middle: f64) -> Aspect {
+        match (self, position) {
+            (Self::Section, Some(position)) => Aspect::Section(Place::Position(position)),
+            (Self::Section, None) => Aspect::Section(Place::At(place.unwrap_or(middle))),
+            _ => Aspect::Side,
+        }
+    }
+
+    /// Pixels across of a picture, or of a film.
+    pub fn usual_width(self, is_film: bool) -> u32 {
+        let of_side = if is_film { 960 } else { 2400 };
+        if self == Self::Section {
+            of_side / 2
+        } else {
+            of_side
+        }
+    }
+}
 
 /// What is made of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

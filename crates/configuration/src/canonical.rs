@@ -76,7 +76,7 @@ impl Configuration {
 
     fn hash(&self, heading: &str, counts: impl Fn(&Entry) -> bool) -> [u8; 32] {
         let mut text = heading.to_owned();
-        // The usual velocity of jammed grains was that of drive.strain_rate once, whatever the schedule.
+        // Hashes take the velocity of jammed grains over that of drive.strain_rate, whatever the schedule, as they did at first.
         for entry in self
             .entries(self.wave_speed())
             .iter()
@@ -85,7 +85,7 @@ impl Configuration {
             let (path, value) = (entry.path(), bits(&entry.value));
             text += &format!("{path}={value}\n");
         }
-        // Every inlet was looked at so once.
+        // An inlet that fills up at every look, as all did at first, adds nothing.
         let looks = self.looks_per_feeding();
         if looks > 1 {
             text += &format!("inlet.looks_per_feeding={looks}\n");

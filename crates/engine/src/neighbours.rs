@@ -30,9 +30,9 @@ pub(crate) struct Neighbours<H> {
     /// How many spheres are grains, and the skins with which it was made.
     grains: usize,
     skins: [f64; 2],
-    /// Grains and spheres of the wall in the cells where the partners of grains are; and those of the wall in cells of their
-    /// own. What is found for grains, and for the wall.
+    /// Grains, and spheres of the wall, in cells of the range of grains; spheres of the wall in cells of their own range.
     cells: [Cells; 3],
+    /// Pairs whose first sphere is a grain, and those whose first is of the wall.
     found: [Vec<Piece>; 2],
     collecting: Collecting,
     /// Histories (i, j, history) on their way from one list to the next.

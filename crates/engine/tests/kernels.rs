@@ -311,14 +311,21 @@ fn trajectories_stay_together() {
     }
 }
 
+/// A state in a wall that jumps at t = 1.01.
+fn jumping(row: Row) -> State {
+    let amplitude = Schedule::through(vec![(0.0, 0.2), (1.01, 0.2), (1.01, 0.3)]);
+    let amplitude = amplitude.expect("times that ascend");
+    let mut state = lively(row);
+    let frequency = Schedule::constant(0.1);
+    state.wall = waving(coarse(2), 1.5, Waveform::Sine, -1.0, amplitude, frequency);
+    state
+}
+
 /// What a wall that jumps does to the contacts that it finds is work, also where they slide.
 #[test]
 fn a_jump_does_the_same_work() {
-    let amplitude = Schedule::through(vec![(0.0, 0.2), (1.01, 0.2), (1.01, 0.3)]).unwrap();
     for row in rows(Tube::Narrow) {
-        let mut state = lively(row);
-        let (amplitude, frequency) = (amplitude.clone(), Schedule::constant(0.1));
-        state.wall = waving(coarse(2), 1.5, Waveform::Sine, -1.0, amplitude, frequency);
+        let state = jumping(row);
         let mut reference = state.start(Kernel::Reference);
         let mut fast = state.start(Kernel::Fast);
         for (steps, jumps) in [(25, false), (1, true)] {
@@ -388,11 +395,8 @@ proptest! {
 /// A wall that jumps while threads keep what its contacts remember.
 #[test]
 fn threads_change_no_bit_of_a_jump() {
-    let amplitude = Schedule::through(vec![(0.0, 0.2), (1.01, 0.2), (1.01, 0.3)]).unwrap();
     for row in rows(Tube::Narrow) {
-        let mut state = lively(row);
-        let (amplitude, frequency) = (amplitude.clone(), Schedule::constant(0.1));
-        state.wall = waving(coarse(2), 1.5, Waveform::Sine, -1.0, amplitude, frequency);
+        let state = jumping(row);
         let [one, several] = [1, 3].map(|threads| {
             let mut simulation = state.start(Kernel::Fast);
             simulation

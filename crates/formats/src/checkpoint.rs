@@ -22,7 +22,6 @@
 
 mod stream;
 
-use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
@@ -136,29 +135,6 @@ pub fn write<State: Serialize>(
     state: &State,
 ) -> Result<(), FormatError> {
     atomic::write_with(path, |file| stream::write(identity, state, file))
-}
-
-/// Reads the state from a checkpoint file.
-///
-/// # Errors
-/// As [`decode`], and [`FormatError::Io`].
-pub fn read<State: DeserializeOwned>(
-    path: &Path,
-    identity: &CheckpointIdentity,
-) -> Result<State, FormatError> {
-    let mut file = File::open(path).map_err(FormatError::io("read", path))?;
-    let mut bytes = Vec::new();
-    (&mut file)
-        .take(HEADER_BYTES as u64)
-        .read_to_end(&mut bytes)
-        .map_err(FormatError::io("read", path))?;
-    // The header comes first on its own, so that a huge file of another kind is refused before it is in memory.
-    let header = Header::from_bytes(&bytes)?;
-    header.identity.require(identity)?;
-    file.take(header.payload_bytes + 1)
-        .read_to_end(&mut bytes)
-        .map_err(FormatError::io("read", path))?;
-    decode(identity, &bytes)
 }
 
 #[derive(Debug)]

@@ -179,12 +179,6 @@ impl Observer {
         [self.unfolded.len(), self.start.len()] == [grains; 2] && self.kinds.fits(grains)
     }
 
-    /// Ends the interval, begins the next, and answers what happened between.
-    pub fn sample(&mut self, view: &View<'_>) -> Sample {
-        let before = self.end_interval(view);
-        Sample::of(&before, self, view)
-    }
-
     /// Ends the interval and begins the next; answers the observer as it stood when the ended interval began.
     pub fn end_interval(&mut self, view: &View<'_>) -> Self {
         let start = core::mem::take(&mut self.start);
@@ -195,16 +189,6 @@ impl Observer {
             ..Self::at(view.simulation, (start, kinds))
         };
         core::mem::replace(self, now)
-    }
-
-    /// How the grains were mixed at the end of the last period, where that can be said.
-    pub fn mixing(&self) -> Option<Mixing> {
-        self.mixing
-    }
-
-    /// How the sizes were segregated at the end of the last period.
-    pub fn segregation(&self) -> Segregation {
-        self.segregation
     }
 
     /// Ends a period together with the last interval: looks how the grains lie, which takes as long as a few steps.

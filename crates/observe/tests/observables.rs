@@ -8,7 +8,7 @@ use peristalsis_engine::{Bodies, Integrator, OpenEnds, Parameters, Simulation, W
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
     AxialDispersion, COLUMNS, Column, ContactForce, ContactForces, FaultKind, Observer, PROFILE,
-    Quantity, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, clear_volume,
+    Quantity, Sample, TubeShape, View, WAVES, WaveByWave, WaveFrameProfile, WavePart, clear_volume,
     note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
@@ -66,6 +66,13 @@ fn free_flight(heading: f64) -> Simulation {
     Simulation::new(bodies, wall(heading, 0.5), parameters())
 }
 
+/// Ends the interval and answers what happened in it.
+fn sampled(observer: &mut Observer, simulation: &Simulation) -> Sample {
+    let view = View::of(simulation);
+    let before = observer.end_interval(&view);
+    Sample::of(&before, observer, &view)
+}
+
 #[test]
 fn the_flow_of_free_flight_is_that_of_the_velocities() {
     for heading in [1.0, -1.0] {
@@ -73,7 +80,7 @@ fn the_flow_of_free_flight_is_that_of_the_velocities() {
         let mut observer = Observer::new(&simulation);
         // The last grain goes backward through the seam.
         simulation.advance(40).unwrap();
-        let sample = observer.sample(&View::of(&simulation));
+        let sample = sampled(&mut observer, &simulation);
         let sum = heading * 1.4;
         assert!((sample.flow_rate - sum / 20.0).abs() < 1e-12);
         assert!((sample.flow_rate_instantaneous - sum / 20.0).abs() < 1e-12);
@@ -99,7 +106,7 @@ fn a_grain_outside_counts_in_the_raw_columns_only() {
     simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
     let mut observer = Observer::new(&simulation);
     simulation.advance(20).unwrap();
-    let sample = observer.sample(&View::of(&simulation));
+    let sample = sampled(&mut observer, &simulation);
     assert_eq!((sample.escaped, sample.inside), (1.0, 3.0));
     assert!((sample.flow_rate_ratio - 0.5).abs() < 1e-12);
     assert!((sample.flow_rate_ratio_raw - 0.35).abs() < 1e-12);
@@ -120,7 +127,7 @@ fn the_body_force_works_on_the_grains_inside() {
         let mut simulation = Simulation::new(bodies, wall(heading, 0.5), parameters);
         let mut observer = Observer::new(&simulation);
         simulation.advance(20).unwrap();
-        let sample = observer.sample(&View::of(&simulation));
+        let sample = sampled(&mut observer, &simulation);
         assert_eq!(sample.escaped, 1.0);
         // After the time 1 three grains at 0.5 have fallen from rest across, and their mean axial velocity was 0.495. That
         // across of the fourth counts with its velocity at the end, twice the mean.
@@ -386,7 +393,7 @@ fn ballistic_dispersion(periods: u32, steps: u64) -> AxialDispersion {
     for _ in 0..periods {
         simulation.advance(steps).expect("free grains");
         let view = View::of(&simulation);
-        observer.sample(&view);
+        observer.end_interval(&view);
         dispersion.end_period(&observer, &view);
     }
     dispersion
@@ -436,10 +443,10 @@ fn displacements_count_from_the_start() {
     for heading in [1.0, -1.0] {
         let mut simulation = free_flight(heading);
         let mut observer = Observer::new(&simulation);
-        let mut sample = observer.sample(&View::of(&simulation));
+        let mut sample = sampled(&mut observer, &simulation);
         for _ in 0..3 {
             simulation.advance(40).unwrap();
-            sample = observer.sample(&View::of(&simulation));
+            sample = sampled(&mut observer, &simulation);
         }
         // v_z = 0.5, 0.5, 0.5, -0.1: mean 0.35, variance 0.0675, for 6 t and through the seam.
         assert!((sample.axial_displacement - heading * 0.35 * 6.0).abs() < 1e-12);
@@ -647,7 +654,7 @@ fn a_hundred_and_one_contacts_leave_one_above() {
 }
 
 /// 40 grains that do not meet, in a straight tube of length 20, the even ones with another velocity than the odd ones.
-fn two_streams(even: f64, odd: f64) -> Observer {
+fn two_streams(even: f64, odd: f64) -> Sample {
     let grain = |number: u32| {
         let number = f64::from(number);
         DVec3::new(0.0, 0.2 * number - 4.0, 0.25 + 0.5 * number)
@@ -660,9 +667,9 @@ fn two_streams(even: f64, odd: f64) -> Observer {
     let mut observer = Observer::new(&simulation);
     simulation.advance(400).expect("free flight");
     let view = View::of(&simulation);
-    observer.end_interval(&view);
+    let before = observer.end_interval(&view);
     observer.end_period(&view);
-    observer
+    Sample::of(&before, &observer, &view)
 }
 
 /// Grains that all move by L/4 stay apart; where every other one has moved by L/2 more, half of each kind has changed sides and
@@ -670,9 +677,8 @@ fn two_streams(even: f64, odd: f64) -> Observer {
 #[test]
 fn grains_that_move_alike_do_not_mix_and_streams_that_pass_each_other_do() {
     for (even, odd, expected) in [(0.25, 0.25, 0.0), (0.5, 0.0, 39.0 / 36.0)] {
-        let found = two_streams(even, odd)
-            .mixing()
-            .expect("40 grains have an index");
+        let found = two_streams(even, odd).mixing;
+        let found = found.expect("40 grains have an index");
         assert!((found.axial - expected).abs() < 1e-12, "{found:?}");
         // None moved across the tube.
         assert!(found.radial.abs() < 1e-12, "{found:?}");
@@ -693,7 +699,8 @@ fn sizes_that_lie_apart_are_segregated() {
             ..parameters()
         };
         let simulation = Simulation::new(bodies.clone(), wall(-1.0, 0.5), parameters);
-        let found = Observer::new(&simulation).segregation();
+        let mut observer = Observer::new(&simulation);
+        let found = sampled(&mut observer, &simulation).segregation;
         let is = |found: Option<f64>, expected: f64| (found.unwrap() - expected).abs() < 1e-12;
         assert!(is(found.radial, 1.0), "{found:?}");
         assert!(is(found.belly, 1.0), "{found:?}");

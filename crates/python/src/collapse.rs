@@ -207,7 +207,7 @@ pub(crate) fn fit_collapse<'py>(
         let (start, steps) = (&search.start, &search.steps);
         let (starts, seed, correction) = (search.starts, search.seed, search.correction);
         let known = search.known();
-        let found = collapse.estimate_knowing(&known, start, steps, starts, seed, correction)?;
+        let found = collapse.estimate(&known, start, steps, starts, seed, correction)?;
         let values = found.parameters.iter().map(|parameter| parameter.value);
         let left_out = if search.leave_one_out {
             let best: Vec<f64> = values.collect();

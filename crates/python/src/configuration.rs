@@ -329,7 +329,7 @@ impl Configuration {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "configuration_reduced")
+        helped(slf, "configuration_reduced")
     }
 
     fn __str__(&self) -> String {
@@ -337,11 +337,11 @@ impl Configuration {
     }
 
     fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "configuration_text")
+        helped(slf, "configuration_text")
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "configuration_html")
+        helped(slf, "configuration_html")
     }
 
     /// Number of grains N.

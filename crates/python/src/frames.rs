@@ -3,10 +3,9 @@
 use std::path::PathBuf;
 
 use parking_lot::Mutex;
-use peristalsis_command::choice::{self, value_of};
+use peristalsis_command::choice::{self, View, value_of};
 use peristalsis_run::{
-    Aspect, Drawing, FrameFile, FrameFormat, FrameSource, Look, PictureScene, Place, RunError,
-    Writing, space_time,
+    Drawing, FrameFile, FrameFormat, FrameSource, Look, PictureScene, RunError, Writing, space_time,
 };
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -109,41 +108,25 @@ pub(crate) fn render<'py>(
         true => Writing::None,
         false => Writing::Full,
     };
-    let kinds = ["side", "section", "space-time"];
-    let view = view.replace('_', "-");
-    if !kinds.contains(&view.as_str()) {
-        let known = kinds.join(", ");
-        return Err(PyValueError::new_err(format!(
-            "view = {view:?} is not possible; there are {known}"
-        )));
-    }
-    if (place.is_some() || position.is_some()) && view != "section" {
+    let view = chosen("view", choice::VIEWS, view)?;
+    if (place.is_some() || position.is_some()) && view != View::Section {
         return Err(PyValueError::new_err(
             "place and position are those of view = \"section\"",
         ));
     }
-    let look = |middle: f64| {
-        let aspect = match (view.as_str(), position) {
-            ("section", Some(position)) => Aspect::Section(Place::Position(position)),
-            ("section", None) => Aspect::Section(Place::At(place.unwrap_or(middle))),
-            _ => Aspect::Side,
-        };
-        let usual = if aspect == Aspect::Side { 2400 } else { 1200 };
-        let width = width.unwrap_or(usual);
-        Look {
-            aspect,
-            field,
-            range,
-            wall,
-            waves,
-            width,
-            paper,
-            writing,
-            ..Look::default()
-        }
+    let look = |middle: f64| Look {
+        aspect: view.aspect(place, position, middle),
+        field,
+        range,
+        wall,
+        waves,
+        width: width.unwrap_or(view.usual_width(false)),
+        paper,
+        writing,
+        ..Look::default()
     };
-    let draw = run.look(py, |run| match view.as_str() {
-        "space-time" => space_time(run).map(|drawing| Box::new(move || Ok(drawing)) as Draw),
+    let draw = run.look(py, |run| match view {
+        View::SpaceTime => space_time(run).map(|drawing| Box::new(move || Ok(drawing)) as Draw),
         _ => still(run, look(0.5 * run.simulation().wall().length())),
     });
     let draw = draw.map_err(of_run)?;

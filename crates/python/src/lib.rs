@@ -26,10 +26,9 @@ use pyo3::prelude::*;
 /// What a function of the package, written in Python, makes of one of our objects.
 fn helped<'py, T: pyo3::PyTypeInfo>(
     object: &Bound<'py, T>,
-    module: &str,
     function: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let module = object.py().import(format!("peristalsis.{module}"))?;
+    let module = object.py().import("peristalsis._tables")?;
     module.call_method1(function, (object,))
 }
 

@@ -135,7 +135,7 @@ impl Table {
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "reduced")
+        helped(slf, "reduced")
     }
 
     /// The table as a stream of record batches (one), without a copy.
@@ -180,7 +180,7 @@ impl Table {
         copy: Option<bool>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let _ = (dtype, copy);
-        helped(slf, "_tables", "rows")
+        helped(slf, "rows")
     }
 
     /// Names of the columns, as `column_names`.
@@ -270,7 +270,7 @@ impl Table {
     /// >>> frame.attrs["units"]["time"]
     /// 't'
     fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "to_pandas")
+        helped(slf, "to_pandas")
     }
 
     /// The table as a frame of polars, without a copy.
@@ -292,7 +292,7 @@ impl Table {
     /// >>> table.to_polars().columns == table.column_names
     /// True
     fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "to_polars")
+        helped(slf, "to_polars")
     }
 
     /// The table as a data set of xarray.
@@ -318,7 +318,7 @@ impl Table {
     /// >>> list(data.dims), data["flow_rate"].attrs["units"]
     /// (['time'], '1/t')
     fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "to_xarray")
+        helped(slf, "to_xarray")
     }
 
     /// A column as a new NumPy array (numbers; NaN where one is missing) or list.
@@ -386,11 +386,11 @@ impl Table {
     }
 
     fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "text")
+        helped(slf, "text")
     }
 
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        helped(slf, "_tables", "html_text")
+        helped(slf, "html_text")
     }
 }
 

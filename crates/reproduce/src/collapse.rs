@@ -123,7 +123,7 @@ impl Curves {
                 .collect()
         };
         let (start, steps) = (with(start, |one| one.value), with(STEPS, |one| one.error));
-        let found = collapse.estimate_knowing(&known, &start, &steps, STARTS, SEED, None);
+        let found = collapse.estimate(&known, &start, &steps, STARTS, SEED, None);
         let found = found.ok()?;
         let claimed = claimed.map(|exponents| {
             let quality = collapse.quality(&with(exponents, |one| one.value)).ok();

@@ -18,8 +18,6 @@ pub struct StudyResults {
     again: Option<Store>,
     /// Finished runs, a row each, in the order of the axes.
     table: Table,
-    /// Runs of the study that are not finished.
-    pub missing: usize,
 }
 
 /// The results of the studies that are there, by name.
@@ -37,12 +35,10 @@ impl Evidence {
         let survey = store.survey()?;
         let table = store.rows()?;
         check(&table)?;
-        let missing = survey.plan.runs().len().saturating_sub(table.rows());
         let results = StudyResults {
             store: Some(store),
             again,
             table,
-            missing,
         };
         self.studies.insert(survey.study.name, results);
         Ok(())
@@ -58,7 +54,6 @@ impl Evidence {
             store: None,
             again: None,
             table,
-            missing: 0,
         };
         self.studies.insert(name.to_owned(), results);
         Ok(())

@@ -191,8 +191,8 @@ impl<'a> ForceLine<'a> {
     }
 }
 
-/// How much is behind some runs at one strain rate: over the two starts the fewest forces that have runs which count, and of
-/// those runs the number at the force which has fewest among the best so many as a verdict takes.
+/// How much is behind some runs at one strain rate. Of each start only runs that count are counted: the number of forces that
+/// have any, and the replicates at the last of the best so many forces that a verdict takes. The smaller of both starts.
 fn behind(rows: &[Row<'_>]) -> Statistics {
     let groups = by_start_and_force(rows);
     let of = |start: Start| {

@@ -47,4 +47,4 @@ pub use reproduction::{
     STORES, Sample, Sampling, Stage, StudyOutcome, chosen, published_in_words,
 };
 pub use row::{Lattice, Row, Start};
-pub use studies::{Products, STUDIES, Size, StudyFile};
+pub use studies::{STUDIES, Size, StudyFile};

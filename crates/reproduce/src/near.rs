@@ -177,8 +177,8 @@ impl Near {
         self.critical_widths().into_iter().flatten().next()
     }
 
-    /// w_c with an error that knows of the law: midway between those of the free power and of alpha = 1, their distance
-    /// from it beside the larger error of both. Where neither law holds, that by the likelihood of all runs.
+    /// w_c midway between the fits with free alpha and with alpha = 1; its error is the larger of theirs and half their
+    /// distance, added in quadrature. Where neither law holds, that by the likelihood of all runs.
     pub(crate) fn critical_width(&self) -> Option<Uncertain> {
         let [linear, power, of_all] = self.critical_widths();
         let (Some(one), Some(other)) = (power.or(linear), linear.or(power)) else {

@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use peristalsis_analysis::{Transition, Uncertain, mean_and_error};
 use peristalsis_formats::{FormatError, Table, Values};
+use peristalsis_physics::contact::LinearSpringDashpot;
 use peristalsis_run::THRESHOLDS;
 
 use crate::finding::Statistics;
@@ -259,10 +260,13 @@ impl<'a> Row<'a> {
         self.number_or("contact.normal_damping", 0.00548)
     }
 
-    /// e = exp(-pi eta/(2 m k - eta^2)^{1/2}) of two equal grains.
+    /// Of two equal grains.
     pub(crate) fn restitution(&self) -> f64 {
-        let (stiffness, damping) = (self.stiffness(), self.damping());
-        (-core::f64::consts::PI * damping / (2.0 * stiffness - damping * damping).sqrt()).exp()
+        let law = LinearSpringDashpot {
+            normal_stiffness: self.stiffness(),
+            normal_damping: self.damping(),
+        };
+        law.restitution(0.5)
     }
 
     /// Wall spheres per area of the straight tube \[1/d^2\].

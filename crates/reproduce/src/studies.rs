@@ -26,17 +26,6 @@ impl Size {
     }
 }
 
-/// Of which runs claims need more than the row: time series, profile, flow of the waves or spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Products {
-    /// Of none.
-    NotNeeded,
-    /// Of the first replicate of each point, for figures.
-    OfFirst,
-    /// Of all, for the analysis.
-    OfAll,
-}
-
 /// A study in both sizes; both have the same name, and so share a store and the runs that they have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyFile {
@@ -44,8 +33,9 @@ pub struct StudyFile {
     pub name: &'static str,
     /// Path of the full design within the repository.
     pub path: &'static str,
-    /// Whose products the claims need. Runs of which only the row is there, as it was imported, are computed for them.
-    pub products: Products,
+    /// Whether figures of claims need more than the rows: time series, profile, flow of the waves or spheres of the first
+    /// replicate of each point. Where only its row is there, as it was imported, that run is computed again.
+    pub needs_products: bool,
     quick: &'static str,
     full: &'static str,
 }
@@ -61,7 +51,7 @@ impl StudyFile {
         Self {
             name,
             path,
-            products: Products::NotNeeded,
+            needs_products: false,
             quick,
             full,
         }
@@ -69,8 +59,11 @@ impl StudyFile {
 
     /// The same, with products that claims need.
     #[must_use]
-    pub const fn needing(self, products: Products) -> Self {
-        Self { products, ..self }
+    pub const fn needing_products(self) -> Self {
+        Self {
+            needs_products: true,
+            ..self
+        }
     }
 
     /// The text of the study file.
@@ -146,22 +139,22 @@ pub const STUDIES: &[StudyFile] = &[
     study!("longest-tubes"),
     study!("method-fine"),
     study!("method-coarse"),
-    study!("back-flow").needing(Products::OfFirst),
+    study!("back-flow").needing_products(),
     study!("two-by-two-stress"),
     study!("two-by-two-strain"),
     study!("matched-bottlenecks"),
     study!("small-speed-size"),
     study!("sweep-up"),
     study!("sweep-down"),
-    study!("pumping-frictionless").needing(Products::OfFirst),
-    study!("pumping-frictional").needing(Products::OfFirst),
-    study!("elastic-flow").needing(Products::OfFirst),
+    study!("pumping-frictionless").needing_products(),
+    study!("pumping-frictional").needing_products(),
+    study!("elastic-flow").needing_products(),
     study!("elastic-branches"),
     study!("elastic-extremes"),
-    study!("elastic-yielding").needing(Products::OfFirst),
+    study!("elastic-yielding").needing_products(),
     study!("elastic-frictionless"),
     study!("elastic-sensitivity"),
-    study!("unjammed-frictionless").needing(Products::OfFirst),
+    study!("unjammed-frictionless").needing_products(),
     study!("closure"),
     study!("segments"),
     study!("segments-wave"),

@@ -27,8 +27,8 @@ pub(crate) const LEAST_ERROR_AGAINST_FORCE: f64 = 2e-3;
 
 /// Points on either side that are continued to a jump by a straight line: the fewest that show whether a line fits.
 pub(crate) const CONTINUED: usize = 3;
-/// Errors from which on a difference of two flows counts that is chosen among many: one of them is three of its errors by
-/// chance. Where a single difference is asked for, its 95 per cent interval decides.
+/// From so many of its errors on a difference of two flows counts that was chosen among many: by chance one of many reaches
+/// three. Where a single difference is asked for, its 95 per cent interval decides.
 pub(crate) const CLEAR: f64 = 4.0;
 /// Height of J/Jmax from which on a fall between two widths counts: below lies the scatter of neighbouring widths.
 pub(crate) const LEAST_FALL: f64 = 0.05;

@@ -1,44 +1,16 @@
 //! The design of a pump: what its file becomes, and how good an expectation is.
-//!
-//! `GOLDEN=write cargo test -p peristalsis-reproduce --test design published` writes the published points anew from the rows.
 
 #![allow(
     clippy::unwrap_used,
     reason = "a test fails where what it needs is missing"
 )]
 
-use std::path::Path;
-
 use peristalsis_configuration::{Configuration, ConfigurationError, Control, SourceFile, material};
-use peristalsis_formats::parquet;
+use peristalsis_reproduce::Start;
 use peristalsis_reproduce::design::{
-    ALL, AT_THE_EDGE, Design, GROUPS, Point, WITHIN, configuration_text, encoded, expectation,
-    groups, is_design, page, points_of, published, rounded,
+    ALL, AT_THE_EDGE, Design, GROUPS, Point, WITHIN, configuration_text, expectation, groups,
+    is_design, page, published, rounded,
 };
-use peristalsis_reproduce::{STUDIES, Start};
-
-#[test]
-fn the_published_points_are_those_of_the_rows() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let read = |name: &str| {
-        let path = root.join(format!("validation/results/{name}.parquet"));
-        path.exists().then(|| parquet::read(&path).unwrap())
-    };
-    let studies = STUDIES
-        .iter()
-        .filter_map(|study| Some((study, read(study.name)?)));
-    let studies: Vec<_> = studies.collect();
-    let text = encoded(&points_of(&studies).unwrap()).unwrap();
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/design/published.csv");
-    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        std::fs::write(&path, &text).unwrap();
-    }
-    assert!(
-        text == std::fs::read_to_string(&path).unwrap(),
-        "published.csv is not what the rows say: write it anew, as the head of this test says"
-    );
-    assert!(published().len() > 500, "{}", published().len());
-}
 
 /// The tube of a point: all but the occlusion.
 fn tube(point: &Point) -> [f64; GROUPS] {

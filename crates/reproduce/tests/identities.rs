@@ -12,6 +12,7 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
+use peristalsis_formats::hexadecimal;
 use peristalsis_reproduce::{STUDIES, Size};
 use sha2::{Digest, Sha256};
 
@@ -27,8 +28,7 @@ fn runs_are_who_they_were() {
                 let seed = plan.configuration(run).run.seed;
                 digest.update(format!("{} {seed}\n", run.identity));
             }
-            let digest = &digest.finalize()[..8];
-            let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            let digest = hexadecimal(&digest.finalize()[..8]);
             let runs = plan.runs().len();
             writeln!(
                 found,

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use peristalsis_reproduce::{
-    Claim, Event, Evidence, Extent, Finding, ImportedRuns, Outcome, Products, Prose, PublishedRows,
+    Claim, Event, Evidence, Extent, Finding, ImportedRuns, Outcome, Prose, PublishedRows,
     ReproduceError, Reproduction, Sample, Size, Statistics, StudyFile, Verdict, chosen,
     published_in_words,
 };
@@ -57,7 +57,7 @@ fn count(evidence: &Evidence, study: &str) -> Result<Finding, ReproduceError> {
     };
     Ok(Finding {
         verdict: Verdict::Reproduced,
-        summary: format!("{} runs, {} missing", results.rows().len(), results.missing),
+        summary: format!("{} runs", results.rows().len()),
         statistics,
         ..Finding::default()
     })
@@ -133,10 +133,7 @@ fn claims_are_examined_as_their_studies_end_and_one_that_fails_loses_no_other() 
         .map(|examination| examination.experiment.id)
         .collect();
     assert_eq!(ids, ["F1", "F2", "F3", "F4"]);
-    assert_eq!(
-        summaries(&outcome)[..2],
-        ["6 runs, 0 missing", "4 runs, 0 missing"]
-    );
+    assert_eq!(summaries(&outcome)[..2], ["6 runs", "4 runs"]);
     assert_eq!(outcome.examinations[0].finding.verdict, Verdict::Reproduced);
     let failures: Vec<Option<&str>> = outcome
         .examinations
@@ -167,10 +164,7 @@ fn sizes_share_their_runs_and_a_stop_keeps_what_is_finished() {
     let full = prepared(folder.path(), Size::Full);
     let stopped = full.run(EFFORT, &|| true, &mut |_| {});
     assert_eq!(stopped.ending, Ending::Stopped);
-    assert_eq!(
-        summaries(&stopped)[..2],
-        ["2 runs, 4 missing", "2 runs, 2 missing"]
-    );
+    assert_eq!(summaries(&stopped)[..2], ["2 runs", "2 runs"]);
     // No time at all.
     let effort = Effort {
         limit: Some(Duration::ZERO),
@@ -188,7 +182,7 @@ fn sizes_share_their_runs_and_a_stop_keeps_what_is_finished() {
     assert!(matches!(ending, Ending::Stopped | Ending::Complete));
     let (outcome, _) = run(&full);
     assert_eq!(outcome.ending, Ending::Complete);
-    assert_eq!(summaries(&outcome)[0], "6 runs, 0 missing");
+    assert_eq!(summaries(&outcome)[0], "6 runs");
     // A request to stop has no effect where nothing is left to do.
     assert_eq!(
         full.run(EFFORT, &|| true, &mut |_| {}).ending,
@@ -239,7 +233,7 @@ fn runs_in_tables_need_not_be_computed_again() {
     // Nothing is left to compute.
     let outcome = second.run(EFFORT, &|| true, &mut |_| {});
     assert_eq!(outcome.ending, Ending::Complete);
-    assert_eq!(summaries(&outcome)[0], "6 runs, 0 missing");
+    assert_eq!(summaries(&outcome)[0], "6 runs");
     // Again, by name and into the other size: what it asks for is there.
     let quick = prepared(&folder.path().join("second"), Size::Quick);
     let import = quick.import(&[tables.join("long.csv")]).unwrap();
@@ -258,11 +252,7 @@ fn imported_rows_count_and_products_that_claims_need_are_computed_again() {
     let store = Store::open(&first.join("stores/short")).unwrap();
     store.export(&tables, false).unwrap();
     // Runs of two widths that have a time series in the end.
-    for (products, expected) in [
-        (Products::NotNeeded, 0),
-        (Products::OfFirst, 2),
-        (Products::OfAll, 4),
-    ] {
+    for (study, expected) in [(STUDIES[1], 0), (STUDIES[1].needing_products(), 2)] {
         let with_series = |evidence: &Evidence| {
             let results = evidence.study("short")?;
             let mut number = 0;
@@ -274,9 +264,8 @@ fn imported_rows_count_and_products_that_claims_need_are_computed_again() {
             Ok(finding)
         };
         let claims = [claim("F2", &["short"], with_series)];
-        let studies = [STUDIES[1].needing(products)];
-        let second = folder.path().join(format!("{products:?}"));
-        let prepared = Reproduction::prepare(&second, Size::Full, &claims, &studies).unwrap();
+        let second = folder.path().join(expected.to_string());
+        let prepared = Reproduction::prepare(&second, Size::Full, &claims, &[study]).unwrap();
         let import = prepared.import(std::slice::from_ref(&tables)).unwrap();
         assert_eq!(import.studies[0].found, 4);
         // A folder that an interrupted run left before its row was imported holds no products.
@@ -323,7 +312,7 @@ fn sampled(reproduction: &Reproduction, extent: Extent, seed: u64) -> Vec<Publis
     assert_eq!(drawn.within_reach, [("long", 6), ("short", 4)]);
     assert!(fractions.is_sorted(), "{fractions:?}");
     let outcome = reproduction.examine(&mut |_| {});
-    assert_eq!(summaries(&outcome)[0], "6 runs, 0 missing");
+    assert_eq!(summaries(&outcome)[0], "6 runs");
     outcome.published
 }
 
@@ -414,7 +403,7 @@ fn a_store_that_cannot_be_used_costs_only_its_claims() {
     });
     assert_eq!(outcome.ending, Ending::Complete);
     assert_eq!(troubles, ["short"]);
-    assert_eq!(summaries(&outcome)[0], "2 runs, 0 missing");
+    assert_eq!(summaries(&outcome)[0], "2 runs");
     let failure = outcome.examinations[1].failure.as_deref().unwrap();
     assert!(
         failure.contains("study short") && failure.contains("it holds other files"),

@@ -274,7 +274,8 @@ fn initial_ratio(configuration: &Configuration, simulation: &Simulation) -> f64 
     }
 }
 
-/// The way from J/Jmax at the start to a threshold. Whoever starts at it leaves it upward, in jammed flow downward.
+/// The way from J/Jmax at the start to a threshold. A run that starts at the threshold is watched upward, a jammed one
+/// downward.
 fn direction(start: f64, threshold: f64) -> Direction {
     match start < threshold || start == threshold && start < 1.0 {
         true => Direction::Upward,

@@ -17,7 +17,7 @@ const BYTES_A_RUN: f64 = 36_000.0;
 
 /// Seconds that a run takes besides its steps, about: its files are synchronised with the disk. Runs of next to no steps took
 /// 0.01 s in memory and 0.07 s on the disk of a virtual machine.
-const SECONDS_A_RUN: f64 = 0.05;
+pub const SECONDS_A_RUN: f64 = 0.05;
 
 /// The estimate of a study.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]

@@ -40,7 +40,7 @@ mod specification;
 mod store;
 
 pub use error::StudyError;
-pub use estimate::{StudyEstimate, StudyWarning, study_estimate};
+pub use estimate::{SECONDS_A_RUN, StudyEstimate, StudyWarning, study_estimate};
 pub use identity::{Identity, NotAnIdentity, PHYSICS_VERSION, Record};
 pub use plan::{Plan, PlannedRun, Point, Setting, SettingValue};
 pub use refinement::{Bracket, Finding, brackets, refine};

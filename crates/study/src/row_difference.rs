@@ -7,8 +7,8 @@ use crate::row::Row;
 
 /// Columns that say by which program a run was computed, and not what came out.
 const PROGRAM: [&str; 2] = ["version", "revision"];
-/// Columns, by how they begin, that were added together while the physics stayed as it was; a row of an older program holds
-/// none of them, `late_periods` least of all, which every run has.
+/// How the names of columns begin that were added at one time, without a new version of the physics. A row without
+/// `late_periods`, which every run has, is of a program before that.
 const ADDED: [&str; 7] = [
     "late_periods",
     "flow_rate_ratio_drift",

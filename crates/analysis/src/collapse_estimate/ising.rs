@@ -72,7 +72,14 @@ fn the_exponents_of_ising_are_found() {
         };
         let estimate = |correction| {
             collapse
-                .estimate(&[0.05, 0.9, 2.25], &[0.05, 0.1, 0.02], 4, seed, correction)
+                .estimate(
+                    &[],
+                    &[0.05, 0.9, 2.25],
+                    &[0.05, 0.1, 0.02],
+                    4,
+                    seed,
+                    correction,
+                )
                 .unwrap()
         };
         let found = estimate(Some(-1.0));

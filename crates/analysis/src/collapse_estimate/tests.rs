@@ -111,7 +111,7 @@ impl Kind {
             .zip(&self.steps)
             .map(|(t, s)| t + 0.7 * s)
             .collect();
-        collapse.estimate(&start, &self.steps, 6, seed, correction)
+        collapse.estimate(&[], &start, &self.steps, 6, seed, correction)
     }
 }
 
@@ -310,7 +310,7 @@ fn the_error_of_a_critical_width_is_common_to_its_curve() {
         let start: Vec<f64> = kind.truth.iter().copied().chain(values).collect();
         let steps = known.iter().map(|(_, known)| known.error);
         let steps: Vec<f64> = kind.steps.iter().copied().chain(steps).collect();
-        let found = collapse.estimate_knowing(&known, &start, &steps, 4, seed, None);
+        let found = collapse.estimate(&known, &start, &steps, 4, seed, None);
         let found = found.unwrap();
         moved += found.quality.quality / 5.0;
         held += collapse.quality(&start).unwrap().quality / 5.0;
@@ -323,7 +323,7 @@ fn the_error_of_a_critical_width_is_common_to_its_curve() {
         }
         let beyond = [(7, known[0].1)];
         assert_refused!(
-            collapse.estimate_knowing(&beyond, &start, &steps, 4, seed, None) =>
+            collapse.estimate(&beyond, &start, &steps, 4, seed, None) =>
             LengthMismatch { expected: 7, found: 8 }
         );
     }
@@ -401,7 +401,7 @@ fn a_pure_power_law_fixes_no_exponent_and_the_answer_says_so() {
     };
     for a in [0.0, 1.3, 2.4] {
         let found = collapse
-            .estimate(&[a, 1.0], &[0.3, 0.2], 4, 0, None)
+            .estimate(&[], &[a, 1.0], &[0.3, 0.2], 4, 0, None)
             .unwrap();
         assert!(!found.trusted, "{found:?}");
         let is_said = |doubt: &String| doubt.contains("leave parameter") && doubt.contains("open");

@@ -22,7 +22,7 @@ fn what_no_search_can_begin_with_is_refused() {
         transform: &plain,
         least_overlap: 0.9,
     };
-    let refused = collapse.estimate(&[0.0], &[1.0], 1, 0, None);
+    let refused = collapse.estimate(&[], &[0.0], &[1.0], 1, 0, None);
     assert!(
         matches!(refused, Err(Error::NoOverlap { needed: 0.9, found }) if found > 0.5),
         "{refused:?}"

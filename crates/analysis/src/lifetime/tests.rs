@@ -111,11 +111,10 @@ fn the_shape_tells_chance_from_determinism_and_the_criterion_finds_the_family() 
     assert!(shape(&chance).interval_95.contains(1.0));
     assert!(shape(&sharp).deviations_from(6.0).abs() < 3.0);
     assert!(shape(&sharp).interval_95.lower > 4.0);
-    let akaike = |family, runs: &[Transition]| fit_lifetime(family, runs).unwrap().akaike();
-    let exponential = akaike(Family::Exponential, &sharp);
-    assert!(akaike(Family::Weibull, &sharp) < akaike(Family::Gamma, &sharp));
-    assert!(akaike(Family::Gamma, &sharp) < exponential - 100.0);
-    assert!(akaike(Family::Weibull, &chance) > akaike(Family::Exponential, &chance) - 4.0);
+    let likely = |family, runs: &[Transition]| fit_lifetime(family, runs).unwrap().log_likelihood;
+    assert!(likely(Family::Weibull, &sharp) > likely(Family::Gamma, &sharp));
+    assert!(likely(Family::Gamma, &sharp) > likely(Family::Exponential, &sharp) + 51.0);
+    assert!(likely(Family::Weibull, &chance) < likely(Family::Exponential, &chance) + 3.0);
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn end(scheme: impl Scheme<DVec3>, bodies: &mut Bodies, past: &Past) {
 }
 
 impl Past {
-    /// Lets a body that was put elsewhere have no other past than its present.
+    /// Sets the past of a body that was put elsewhere to its present.
     pub(crate) fn forget(&mut self, bodies: &Bodies, body: usize) {
         let present = [
             (&mut self.velocity, &bodies.velocity),

@@ -88,7 +88,7 @@ impl<H: Copy + Default> WallMemory<H> {
         }
     }
 
-    /// Takes up, as that of the grain behind its own, the memory of a grain of another.
+    /// Appends what `other` remembers of `grain`, as the memory of the next grain.
     pub(crate) fn append(&mut self, other: &Self, grain: usize) {
         if self.start.is_empty() {
             self.start.push(0);

@@ -122,12 +122,8 @@ pub struct Note {
 pub enum Corner {
     /// At the top, on the left.
     TopLeft,
-    /// At the top, on the right.
-    TopRight,
     /// At the bottom, on the left.
     BottomLeft,
-    /// At the bottom, on the right.
-    BottomRight,
 }
 
 /// Anything that a panel shows.

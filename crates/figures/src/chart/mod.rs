@@ -88,8 +88,6 @@ pub enum LegendPlace {
     Inside,
     /// Below the figure, once for all panels.
     Below,
-    /// Nowhere.
-    Hidden,
 }
 
 /// What stands between the parts of a title: a line may end there.
@@ -258,7 +256,6 @@ impl ChartFigure {
             let placed = match self.legend {
                 LegendPlace::Inside => draw_inside(drawing, seat, &obstacles, &entries),
                 LegendPlace::Below => false,
-                LegendPlace::Hidden => true,
             };
             if !placed {
                 below.extend(entries);

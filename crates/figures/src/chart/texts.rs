@@ -85,13 +85,10 @@ impl Painter<'_> {
     fn draw_note(&mut self, note: &Note) {
         let frame = self.frame.area;
         let text = Text::fitted(&note.text, LEGEND_SIZE, frame.width - 2.0 * INSET);
-        let left = match note.corner {
-            Corner::TopLeft | Corner::BottomLeft => frame.left + INSET,
-            Corner::TopRight | Corner::BottomRight => frame.right() - INSET - text.width,
-        };
+        let left = frame.left + INSET;
         let top = match note.corner {
-            Corner::TopLeft | Corner::TopRight => frame.top + INSET,
-            Corner::BottomLeft | Corner::BottomRight => frame.bottom() - INSET - LEGEND_SIZE,
+            Corner::TopLeft => frame.top + INSET,
+            Corner::BottomLeft => frame.bottom() - INSET - LEGEND_SIZE,
         };
         let area = Rectangle::new((left, top), (text.width, LEGEND_SIZE));
         self.obstacles.area(area);

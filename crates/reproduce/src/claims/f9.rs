@@ -140,8 +140,8 @@ impl Loop<'_> {
         Some((self.clearest()?.probability() * self.compared()).min(1.0))
     }
 
-    /// Whether both flows exist at some width; not asked where the flow from rest does not jump, and not told where no width
-    /// just beyond the jump has so many runs from both starts that they could tell.
+    /// Whether both flows exist at some width. `None` where the flow from rest does not jump, and where no width just beyond
+    /// the jump has enough runs from both starts to tell that there is one flow.
     fn is_bistable(&self) -> Option<bool> {
         let is_bistable = self.probability()? < ONE_FLOW_BY_CHANCE;
         let beyond = |one: &Outcomes| one.width - self.critical.value;

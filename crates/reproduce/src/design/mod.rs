@@ -16,9 +16,7 @@ use serde::Serialize;
 pub use document::{configuration_text, is_design, schema};
 pub use groups::{ALL, GROUPS, Group, groups};
 pub use page::page;
-pub use published::{
-    AT_THE_EDGE, Expectation, Point, WITHIN, encoded, expectation, points_of, published, rounded,
-};
+pub use published::{AT_THE_EDGE, Expectation, Point, WITHIN, expectation, published, rounded};
 
 use crate::Start;
 use crate::row::extremes;

@@ -1,18 +1,14 @@
 //! What the published runs say of a tube: the mean flow of those like it.
 
-use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use peristalsis_analysis::number;
-use peristalsis_configuration::{Configuration, InitialState, WaveformName};
-use peristalsis_formats::{FormatError, Table, Values, csv};
-use peristalsis_physics::wall::Arrangement;
+use peristalsis_formats::{FormatError, Table, csv};
 use serde::Serialize;
 
-use super::groups::{ALL, GROUPS, groups};
-use crate::row::{Row, extremes, rows_of};
-use crate::thresholds::MOST_ESCAPED;
-use crate::{Size, Start, StudyFile};
+use super::groups::{ALL, GROUPS};
+use crate::Start;
+use crate::row::extremes;
 
 /// Nearest published point up to which a tube lies within the data.
 pub const WITHIN: f64 = 1.0;
@@ -84,28 +80,6 @@ fn points(table: &Table) -> Result<Vec<Point>, FormatError> {
     Ok((0..table.rows()).map(point).collect())
 }
 
-/// Points as CSV, with three digits; the inverse of reading them.
-///
-/// # Errors
-/// [`FormatError`] where they are no table.
-pub fn encoded(points: &[Point]) -> Result<String, FormatError> {
-    let text = |value: fn(&Point) -> &str| points.iter().map(|it| value(it).to_owned()).collect();
-    let mut table = Table::builder()
-        .column("study", "", "", Values::Text(text(|it| &it.study)))
-        .column("start", "", "", Values::Text(text(|it| it.start.name())));
-    for (place, group) in ALL.iter().enumerate() {
-        let values = points.iter().map(|point| rounded(point.groups[place]));
-        table = table.column(group.name, "1", "", Values::Real(values.collect()));
-    }
-    let flows = points.iter().map(|point| rounded(point.flow)).collect();
-    let runs = points.iter().map(|point| point.runs).collect();
-    let table = table
-        .column("flow", "1", "", Values::Real(flows))
-        .column("runs", "1", "", Values::Integer(runs))
-        .build()?;
-    Ok(csv::encode(&table))
-}
-
 /// A number with three significant digits, at most four decimals.
 pub fn rounded(value: f64) -> f64 {
     let value = (1e4 * value).round() / 1e4;
@@ -163,58 +137,5 @@ pub fn expectation(points: &[Point], groups: &[f64; GROUPS], start: Start) -> Op
     })
 }
 
-/// The points of the runs of several studies, each with its rows: those of a staggered wall and a constant sine wave, whose
-/// flow no longer drifts and whose tube holds its grains.
-///
-/// # Errors
-/// [`ReproduceError`](crate::ReproduceError) where a study or its rows are wrong.
-pub fn points_of(studies: &[(&StudyFile, Table)]) -> crate::error::Result<Vec<Point>> {
-    let mut found: BTreeMap<String, Point> = BTreeMap::new();
-    for (study, table) in studies {
-        let specification = study.specification(Size::Full)?;
-        let plan = specification.plan();
-        let rows: BTreeMap<&str, Row<'_>> = rows_of(table)
-            .into_iter()
-            .map(|row| (row.identity(), row))
-            .collect();
-        let of_point: Vec<Option<[f64; GROUPS]>> = plan
-            .points()
-            .iter()
-            .map(|point| comparable(&point.configuration))
-            .collect();
-        for run in plan.runs() {
-            let row = rows.get(run.identity.to_string().as_str());
-            let (Some(groups), Some(row)) = (of_point[run.point], row) else {
-                continue;
-            };
-            let flow = row.flow_rate_ratio();
-            let leaks = row.escaped_fraction() > MOST_ESCAPED;
-            if !row.is_stationary() || leaks || !flow.is_finite() {
-                continue;
-            }
-            let start = row.start();
-            let key = format!("{start:?} {:?}", groups.map(rounded));
-            let point = found.entry(key).or_insert_with(|| Point {
-                study: study.name.to_owned(),
-                start,
-                groups,
-                flow: 0.0,
-                runs: 0,
-            });
-            point.runs += 1;
-            point.flow += (flow - point.flow) / point.runs as f64;
-        }
-    }
-    Ok(found.into_values().collect())
-}
-
-/// The groups of a tube that others are compared with.
-fn comparable(configuration: &Configuration) -> Option<[f64; GROUPS]> {
-    let moving = configuration.initial.axial_velocity;
-    let is_moved = moving != 0.0 && configuration.initial.state != InitialState::Jammed;
-    let drive = &configuration.drive;
-    let is_plain = configuration.tube.arrangement == Arrangement::Staggered
-        && drive.waveform == WaveformName::Sine
-        && drive.schedules.is_empty();
-    groups(configuration).filter(|_| is_plain && !is_moved)
-}
+#[cfg(test)]
+mod tests;

@@ -18,7 +18,7 @@ use crate::error::{ReproduceError, make_folder};
 use crate::evidence::Evidence;
 use crate::examination::{Examination, examine, experiments_named};
 use crate::finding::Finding;
-use crate::studies::{Products, Size, StudyFile};
+use crate::studies::{Size, StudyFile};
 pub use import::{Import, ImportedRuns};
 pub use published::{DifferingRow, PublishedRows, published_in_words};
 pub use sample::{Drawn, Extent, Sample, Sampling};
@@ -33,7 +33,6 @@ const AGAIN: &str = "again";
 /// A study in either size has the same store: what one size has computed, the other need not compute again.
 #[derive(Debug)]
 pub struct Reproduction {
-    size: Size,
     claims: Vec<Claim>,
     works: Vec<Work>,
     again: PathBuf,
@@ -51,18 +50,18 @@ impl Work {
     /// The part of the study whose products the claims need, with a store of its own, where the study's store has rows without
     /// them; `None` where nothing is wanting.
     fn again(&self, folder: &Path) -> Result<Option<(Specification, Store)>, StudyError> {
-        let replicates = match self.file.products {
-            Products::NotNeeded => return Ok(None),
-            Products::OfFirst => 1,
-            Products::OfAll => self.study.replicates,
-        };
-        let Ok(store) = &self.store else {
+        let Some(store) = self
+            .store
+            .as_ref()
+            .ok()
+            .filter(|_| self.file.needs_products)
+        else {
             return Ok(None);
         };
         let survey = store.survey()?;
         let is_bare =
             |identity| survey.state(identity) == State::Done && !store.holds_products(identity);
-        let is_needed = |run: &PlannedRun| run.replicate < replicates && is_bare(run.identity);
+        let is_needed = |run: &PlannedRun| run.replicate == 0 && is_bare(run.identity);
         let study = self.study.part(&survey.plan, is_needed);
         if study.plan().runs().is_empty() {
             return Ok(None);
@@ -181,7 +180,6 @@ impl Reproduction {
             works.push(Work { file, study, store });
         }
         Ok(Self {
-            size,
             claims: claims.to_vec(),
             works,
             again: folder.join(AGAIN),
@@ -196,11 +194,6 @@ impl Reproduction {
             let mut runs = survey.plan.runs().iter();
             runs.any(|run| survey.is_imported(run.identity))
         })
-    }
-
-    /// The size of the designs.
-    pub fn size(&self) -> Size {
-        self.size
     }
 
     /// Computes what is missing, those studies first that let a claim be examined soonest, and examines the claims.

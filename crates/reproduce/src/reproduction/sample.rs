@@ -9,7 +9,8 @@ use std::time::{Duration, Instant};
 
 use peristalsis_configuration::Configuration;
 use peristalsis_study::{
-    Board, Effort, Ending, Identity, PlannedRun, State, Store, StudyError, Survey, work_on,
+    Board, Effort, Ending, Identity, PlannedRun, SECONDS_A_RUN, State, Store, StudyError, Survey,
+    work_on,
 };
 use sha2::{Digest, Sha256};
 
@@ -19,8 +20,6 @@ use crate::error::ReproduceError;
 /// Grains times steps a second of one core without and with contacts that are remembered: a first guess, which the runs that
 /// were computed replace.
 const SPEED: [f64; 2] = [3e7, 1e7];
-/// Seconds that any run takes beside its steps.
-const SECONDS_A_RUN: f64 = 0.1;
 /// Seconds of computing that the first guess counts for.
 const WEIGHT_OF_GUESS: f64 = 5.0;
 /// Largest part of the time that one run may take: so that there is time for every study.

@@ -227,7 +227,7 @@ impl Trajectory {
     }
 }
 
-/// A file of a trajectory that is not there is no other fault of the disk.
+/// A missing file is told as a damaged trajectory, not as a fault of the disk.
 fn if_missing(error: FormatError) -> FormatError {
     match error {
         FormatError::Io { path, source, .. } if source.kind() == ErrorKind::NotFound => {

@@ -9,11 +9,11 @@ use crate::run::Run;
 const KEY: &str = "observe.transition_threshold";
 /// Thresholds next to each other that a change of the flow passes at least.
 const PASSED: usize = 3;
-/// Periods from one of them to the next at most, and from such a change to a transition that belongs to it.
+/// Most periods between two neighbouring thresholds of one change, and between a change and its transition.
 const PERIODS: f64 = 10.0;
 /// How near to grains at rest or to grains that travel with the wave a threshold can tell no flow from theirs.
 const NEAR: f64 = 0.01;
-/// J/Jmax below which no tube on record comes that nothing but its wave drives (-0.11 is the least).
+/// No tube on record that its wave alone drives has a J/Jmax below this; the least is -0.11.
 const BACK_FLOW: f64 = -0.2;
 
 /// That no flow crosses the threshold, as far as the configuration tells.

@@ -97,7 +97,7 @@ impl Store {
             // A copy carries its hash in its name; one that was damaged must be imported again.
             let bytes = fs::read(path).map_err(StudyError::io("read", path))?;
             if hexadecimal(&Sha256::digest(&bytes)[..8]) != name {
-                set_aside(path, "damaged")?;
+                set_aside(path)?;
                 continue;
             }
             for row in rows_of(path)? {

@@ -42,7 +42,7 @@ impl Index {
         match Self::try_open(path) {
             Err(StudyError::Index { source, .. }) if is_damaged(&source) => {
                 // It is only an index: what it held is in the files.
-                super::set_aside(path, "damaged")?;
+                super::set_aside(path)?;
                 Self::try_open(path)
             }
             outcome => outcome,

@@ -59,7 +59,7 @@ const REASON: &str = "reason.txt";
 /// Of a run that was finished, that it has no seal.
 const GONE: &str = "its seal, done.json, is gone";
 
-/// Of a run that was finished and is not as it was sealed: what becomes of it.
+/// What is said of a finished run whose files differ from its seal.
 pub fn not_whole(identity: Identity, reason: &str) -> String {
     format!(
         "run {identity} is not as it was sealed ({reason}): to be computed again; files that differ are moved aside"
@@ -90,7 +90,7 @@ impl Store {
         if store.file(STUDY).exists() {
             // The copy is damaged; the runs are what they are.
             if store.name().is_none() {
-                set_aside(&store.file(STUDY), "damaged")?;
+                set_aside(&store.file(STUDY))?;
             }
         } else if !store.holds_nothing_else() {
             return Err(StudyError::NoStore {
@@ -264,11 +264,11 @@ fn free(name: impl Fn(u32) -> PathBuf) -> PathBuf {
         .expect("there are fewer files than numbers")
 }
 
-/// Renames a file to one that says why.
-pub(crate) fn set_aside(path: &Path, why: &str) -> Result<()> {
+/// Renames a damaged file to one that says so.
+pub(crate) fn set_aside(path: &Path) -> Result<()> {
     let aside = free(|number| {
         let mut name = path.file_name().unwrap_or_default().to_owned();
-        name.push(format!(".{why}-{number}"));
+        name.push(format!(".damaged-{number}"));
         path.with_file_name(name)
     });
     fs::rename(path, &aside).map_err(StudyError::io("move aside", path))

@@ -3,20 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use peristalsis_run::{Aspect, Eye, Field, Look, Paper, Place, Span, WallLook, Window, Writing};
+use peristalsis_run::{Eye, Field, Look, Paper, Span, WallLook, Window, Writing};
 
-use crate::choice::{EYES, FIELDS, FORMATS, Format, PAPERS, WALLS, one_of};
-
-/// From where a tube is looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum ViewName {
-    /// from the side
-    Side,
-    /// cut across, along the axis
-    Section,
-    /// flow rate of each wave against time
-    SpaceTime,
-}
+use crate::choice::{EYES, FIELDS, FORMATS, Format, PAPERS, VIEWS, View, WALLS, one_of};
 
 /// Where instants are taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -39,8 +28,8 @@ pub(crate) struct RenderArguments {
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// From where the tube is looked at.
-    #[arg(long, value_name = "VIEW", value_enum, default_value = "side")]
-    pub(crate) view: ViewName,
+    #[arg(long, value_name = "VIEW", value_parser = one_of(VIEWS), default_value = "side")]
+    pub(crate) view: View,
     /// What the grains are coloured by; the default is axial-velocity.
     #[arg(long, value_name = "FIELD", value_parser = one_of(FIELDS), alias = "color")]
     pub(crate) colour: Option<Field>,
@@ -123,21 +112,13 @@ pub(crate) struct RenderArguments {
     pub(crate) quiet: bool,
 }
 
-/// Pixels across of a picture and of a film.
-const WIDTHS: [u32; 2] = [2400, 960];
-
 impl RenderArguments {
     /// How the tube is drawn; a section is at `middle` unless the arguments place it.
     pub(crate) fn look(&self, is_film: bool, middle: f64) -> Look {
-        let aspect = match (self.view, self.position) {
-            (ViewName::Section, Some(position)) => Aspect::Section(Place::Position(position)),
-            (ViewName::Section, None) => Aspect::Section(Place::At(self.place.unwrap_or(middle))),
-            _ => Aspect::Side,
-        };
         let plain = Look::default();
-        let usual = WIDTHS[usize::from(is_film)] / if aspect == Aspect::Side { 1 } else { 2 };
+        let usual = self.view.usual_width(is_film);
         Look {
-            aspect,
+            aspect: self.view.aspect(self.place, self.position, middle),
             field: self.colour.unwrap_or(plain.field),
             range: self.range,
             wall: self.wall.unwrap_or(plain.wall),

@@ -14,8 +14,8 @@ use peristalsis_run::{
 use serde_json::json;
 
 pub(crate) use self::arguments::RenderArguments;
-use self::arguments::{FRAMES_PER_SECOND, Origin, ViewName};
-use crate::choice::Format;
+use self::arguments::{FRAMES_PER_SECOND, Origin};
+use crate::choice::{Format, View};
 use crate::commands::{counted, packing, print, refuse_loss, rounded, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
@@ -31,14 +31,14 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     check(arguments, format)?;
     let (folder, run) = RunFolder::open(&arguments.folder)?;
     let name = match arguments.view {
-        ViewName::Side => "tube-side",
-        ViewName::Section => "tube-section",
-        ViewName::SpaceTime => "space-time",
+        View::Side => "tube-side",
+        View::Section => "tube-section",
+        View::SpaceTime => "space-time",
     };
     let usual = || folder.path().join(format!("{name}.{}", format.extension()));
     let out = arguments.out.clone().unwrap_or_else(usual);
     refuse_loss(&out, folder.files())?;
-    if arguments.view == ViewName::SpaceTime {
+    if arguments.view == View::SpaceTime {
         let diagram = space_time(&run)?;
         return finish_picture(arguments, &out, format, (&diagram, None));
     }
@@ -119,22 +119,22 @@ fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
     let reads_file = matches!(arguments.from, None | Some(Origin::Trajectory));
     let refusals = [
         (
-            is_film && arguments.view == ViewName::SpaceTime,
+            is_film && arguments.view == View::SpaceTime,
             "the space-time diagram shows all times at once, and makes no film",
             "take --view side or --view section for a film, or --format png or svg for the diagram",
         ),
         (
-            is_placed && arguments.view != ViewName::Section,
+            is_placed && arguments.view != View::Section,
             "--place and --position are those of a section",
             "add --view section",
         ),
         (
-            is_from_side && arguments.view != ViewName::Side,
+            is_from_side && arguments.view != View::Side,
             "--wall, --eye and --waves are those of a view from the side",
             "leave them out, or take --view side",
         ),
         (
-            is_of_frame && arguments.view == ViewName::SpaceTime,
+            is_of_frame && arguments.view == View::SpaceTime,
             "the space-time diagram shows all times at once, and has its own colours and size",
             "leave out --colour, --range, --contacts, --paper, --bare, --width, --at, --from and --trajectory",
         ),

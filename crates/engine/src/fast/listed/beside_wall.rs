@@ -65,7 +65,7 @@ impl Scratch {
 }
 
 impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
-    /// Adds the sums over contacts with a prescribed wall, where several threads serve it, behind those of all others.
+    /// Adds the sums over contacts with a prescribed wall after all others. With one thread there are none left to add.
     pub(super) fn add_beside_wall(&mut self) {
         if self.beside_wall.is_empty() {
             return;

@@ -1,0 +1,109 @@
+//! The published points are those of the rows; `GOLDEN=write cargo test -p peristalsis-reproduce --lib published` writes them anew.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use peristalsis_configuration::{Configuration, InitialState, WaveformName};
+use peristalsis_formats::{Table, Values, csv, parquet};
+use peristalsis_physics::wall::Arrangement;
+
+use super::*;
+use crate::design::groups;
+use crate::row::{Row, rows_of};
+use crate::thresholds::MOST_ESCAPED;
+use crate::{STUDIES, Size, StudyFile};
+
+#[test]
+fn the_published_points_are_those_of_the_rows() {
+    let crate_folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |name: &str| {
+        let path = crate_folder.join(format!("../../validation/results/{name}.parquet"));
+        path.exists().then(|| parquet::read(&path).unwrap())
+    };
+    let studies = STUDIES
+        .iter()
+        .filter_map(|study| Some((study, read(study.name)?)));
+    let text = encoded(&points_of(&studies.collect::<Vec<_>>()));
+    let path = crate_folder.join("src/design/published.csv");
+    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
+        std::fs::write(&path, &text).unwrap();
+    }
+    assert!(
+        text == std::fs::read_to_string(&path).unwrap(),
+        "published.csv is not what the rows say: write it anew, as the head of this file says"
+    );
+    assert!(published().len() > 500, "{}", published().len());
+}
+
+/// Points as CSV, with three digits; the inverse of reading them.
+fn encoded(points: &[Point]) -> String {
+    let text = |value: fn(&Point) -> &str| points.iter().map(|it| value(it).to_owned()).collect();
+    let mut table = Table::builder()
+        .column("study", "", "", Values::Text(text(|it| &it.study)))
+        .column("start", "", "", Values::Text(text(|it| it.start.name())));
+    for (place, group) in ALL.iter().enumerate() {
+        let values = points.iter().map(|point| rounded(point.groups[place]));
+        table = table.column(group.name, "1", "", Values::Real(values.collect()));
+    }
+    let flows = points.iter().map(|point| rounded(point.flow)).collect();
+    let runs = points.iter().map(|point| point.runs).collect();
+    let table = table
+        .column("flow", "1", "", Values::Real(flows))
+        .column("runs", "1", "", Values::Integer(runs))
+        .build()
+        .unwrap();
+    csv::encode(&table)
+}
+
+/// The points of the runs of several studies, each with its rows: those of a staggered wall and a constant sine wave, whose
+/// flow no longer drifts and whose tube holds its grains.
+fn points_of(studies: &[(&StudyFile, Table)]) -> Vec<Point> {
+    let mut found: BTreeMap<String, Point> = BTreeMap::new();
+    for (study, table) in studies {
+        let specification = study.specification(Size::Full).unwrap();
+        let plan = specification.plan();
+        let rows: BTreeMap<&str, Row<'_>> = rows_of(table)
+            .into_iter()
+            .map(|row| (row.identity(), row))
+            .collect();
+        let of_point: Vec<Option<[f64; GROUPS]>> = plan
+            .points()
+            .iter()
+            .map(|point| comparable(&point.configuration))
+            .collect();
+        for run in plan.runs() {
+            let row = rows.get(run.identity.to_string().as_str());
+            let (Some(groups), Some(row)) = (of_point[run.point], row) else {
+                continue;
+            };
+            let flow = row.flow_rate_ratio();
+            let leaks = row.escaped_fraction() > MOST_ESCAPED;
+            if !row.is_stationary() || leaks || !flow.is_finite() {
+                continue;
+            }
+            let start = row.start();
+            let key = format!("{start:?} {:?}", groups.map(rounded));
+            let point = found.entry(key).or_insert_with(|| Point {
+                study: study.name.to_owned(),
+                start,
+                groups,
+                flow: 0.0,
+                runs: 0,
+            });
+            point.runs += 1;
+            point.flow += (flow - point.flow) / point.runs as f64;
+        }
+    }
+    found.into_values().collect()
+}
+
+/// The groups of a tube that others are compared with.
+fn comparable(configuration: &Configuration) -> Option<[f64; GROUPS]> {
+    let moving = configuration.initial.axial_velocity;
+    let is_moved = moving != 0.0 && configuration.initial.state != InitialState::Jammed;
+    let drive = &configuration.drive;
+    let is_plain = configuration.tube.arrangement == Arrangement::Staggered
+        && drive.waveform == WaveformName::Sine
+        && drive.schedules.is_empty();
+    groups(configuration).filter(|_| is_plain && !is_moved)
+}
