@@ -161,6 +161,7 @@ pub(crate) struct ContactKeys {
     /// Restitution e of two grains of the mean diameter that meet head-on. Give it instead of normal_damping (linear law) or
     /// dissipation_time (Hertz law), which then follow. Linear law: e = exp(-pi beta/sqrt(k/m_ij - beta^2)), beta =
     /// eta/(2 m_ij), at any speed. Hertz law: by integration of an impact at restitution_speed; e falls with the speed.
+    /// Cohesion is left out of it: with cohesion impacts give back less, and slow grains stick.
     #[schemars(extend("x-unit" = "1", "minimum" = 1e-3, "maximum" = 1))]
     pub(crate) restitution: Option<f64>,
     /// Relative speed at which restitution holds under the Hertz law. Default: the speed of the wave. Give it in a study of

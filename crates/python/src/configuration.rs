@@ -193,7 +193,9 @@ impl Configuration {
     /// -------
     /// Configuration
     ///     All other values stay as they were resolved: the number of grains too, so give ``volume_fraction`` again
-    ///     where the tube changes and the fraction should not.
+    ///     where the tube changes and the fraction should not. With ``[units]`` all numbers stay as they are in d, m and t:
+    ///     where a unit changes (``units.stiffness`` does), give gravity and ``units.wave_frequency`` again, or they change
+    ///     in SI. So does a damping that followed from ``restitution``.
     ///
     /// Raises
     /// ------

@@ -541,3 +541,38 @@ def test_a_study_is_no_configuration_of_one_run(tmp_path: Path) -> None:
     file.write_text("name = 'many'\npreset = 'frictionless'\n\n[base]\nrun.periods = 1\n")
     with pytest.raises(ConfigurationError, match="is a study, not the configuration of one run(?s:.*)study run"):
         Simulation.from_file(file)
+
+
+def test_frames_stay_as_far_apart_where_the_speed_of_the_wave_is_set(tmp_path: Path) -> None:
+    sim = Simulation.preset("frictionless-fine", waves=1, number=10, strain_rate=0.05, seed=1)
+    writer = sim.add_writer(tmp_path / "run.parquet", every=0.5)
+    seen: list[float] = []
+    fire = writer._fire
+    writer._fire = lambda it: (seen.append(it.period), fire(it))  # type: ignore[method-assign]
+    sim.run(periods=1.2)
+    sim.strain_rate = 0.1
+    sim.run(periods=1.8)
+    sim.strain_rate = 0.02
+    sim.run(periods=0.25)
+    sim.run(periods=0.8)
+    assert seen == pytest.approx([0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4], abs=0.01)
+
+
+def test_a_folder_of_tables_that_is_begun_anew_holds_no_older_frames(tmp_path: Path) -> None:
+    path = tmp_path / "run.parquet"
+    for seed, every in ((1, 0.5), (2, 1.0)):
+        sim = Simulation.preset("frictionless-fine", waves=1, number=10, strain_rate=0.05, seed=seed)
+        sim.run(periods=1, writers=[Writer(path, every=every, overwrite=True)])
+        (path / "notes.txt").touch()
+    assert len(list(path.iterdir())) == 2 + 1
+
+
+def test_averages_over_grains_that_were_placed_are_those_of_these() -> None:
+    tube = peristalsis.Configuration("frictionless-fine", {"drive.body_force": -0.002}, waves=2, strain_rate=0.05, width=2.6)
+    places = np.c_[np.zeros((15, 2)), np.arange(15) * 1.3 + 0.2]
+    for diameters in (np.r_[0.4, np.ones(14)], np.full(15, 0.7)):
+        sim = Simulation.from_positions(tube, places, diameters=diameters)
+        expected = (diameters**3).sum() / (6 * tube.radius**2 * tube.length)
+        assert sim.configuration.volume_fraction == pytest.approx(expected)
+        again = Simulation.from_bytes(sim.to_bytes())
+        assert again.configuration == sim.configuration

@@ -217,6 +217,35 @@ fn outside_the_data_nothing_is_expected_and_within_it_the_flow_is_that_of_the_ro
             .iter()
             .any(|group| group.distance > AT_THE_EDGE)
     );
+    // What no group tells of: a design's user was foretold the flow of the tube without it.
+    for (key, more) in [
+        ("tube.ends", &["tube.ends=open"][..]),
+        ("cohesion", &["contact.cohesion_force=0.3"]),
+        (
+            "contact.rolling_friction",
+            &[
+                "contact.static_friction=0.3",
+                "contact.rolling_friction=0.3",
+            ],
+        ),
+        ("initial.temperature", &["initial.temperature=0.01"]),
+        ("initial.axial_velocity", &["initial.axial_velocity=0.5"]),
+        ("drive.waveform", &["drive.waveform=bolus"]),
+        (
+            "drive.schedule",
+            &[
+                "drive.schedule={parameter=\"width\", form=\"ramp\", from=2.5, to=2.4, start=0, end=9}",
+            ],
+        ),
+    ] {
+        let unlike = of(&[&["drive.width=2.5"][..], more].concat());
+        assert!(
+            unlike.outside.iter().any(|it| it.starts_with(key)),
+            "{key}: {:?}",
+            unlike.outside
+        );
+        assert!(unlike.expected.is_empty(), "{key}");
+    }
     let closed = of(&[&settings[..4], &["drive.width=0.9"]].concat());
     assert!(closed.regime.starts_with("closed"), "{}", closed.regime);
     let page = page(&heavy, "heavy", "all <of> it");

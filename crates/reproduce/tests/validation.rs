@@ -17,7 +17,7 @@ use peristalsis_reproduce::{CLAIMS, Reproduction, STUDIES, Size};
 /// Folder of the figures, as the document sees it.
 const FIGURES: &str = "docs/images/claims";
 /// Words that the document has at most.
-const MOST_WORDS: usize = 11_000;
+const MOST_WORDS: usize = 11_400;
 /// Characters that fill two lines of a cell.
 const TWO_LINES: usize = 120;
 

@@ -66,8 +66,8 @@ pub struct Estimate {
     pub contact_time: f64,
     /// Steps in such a contact.
     pub steps_per_contact: f64,
-    /// e of two grains of the mean diameter that meet at the speed of the wave; with a static wave `None` where it depends on
-    /// the speed.
+    /// e of two grains of the mean diameter that meet at the speed of the wave; `None` with a static wave where it depends on
+    /// the speed, and with cohesion, with which slow grains stick.
     pub restitution: Option<f64>,
     /// J/Jmax of a Newtonian fluid in this tube, phi = b/a, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
@@ -190,10 +190,12 @@ fn in_the_end(warning: Warning) -> Warning {
 
 /// Whether the speed of the wave decides the restitution, or the law has one for all speeds.
 fn has_restitution(configuration: &Configuration) -> bool {
-    configuration.wave_speed() > 0.0 || matches!(configuration.contact.normal, Normal::Linear(_))
+    let contact = &configuration.contact;
+    let is_known = configuration.wave_speed() > 0.0 || matches!(contact.normal, Normal::Linear(_));
+    is_known && contact.cohesion.is_none()
 }
 
-/// e of two grains of the mean diameter that meet at the speed of the wave.
+/// e of two grains of the mean diameter that meet at the speed of the wave, without cohesion.
 pub fn restitution_at_wave_speed(configuration: &Configuration) -> f64 {
     let diameter = configuration.grains.distribution().mean(1);
     let impact = Impact::of_twins(diameter, configuration.wave_speed());

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use peristalsis_analysis::number::bytes;
 use peristalsis_configuration::{HOUR, Kernel};
 use peristalsis_engine::{SPHERES_OF_A_THREAD, processors};
-use peristalsis_run::{Estimate, estimate};
+use peristalsis_run::{Estimate, estimate, warnings};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::request;
@@ -19,7 +19,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let _stop = Stop::watch()?;
     let configuration = configuration(&arguments.configuration)?;
     let request = request(&arguments.frames)?;
-    let estimate = packing(&configuration, || {
+    let estimate = packing(&configuration, &warnings(&configuration), || {
         estimate(&configuration, request.as_ref())
     })
     .map_err(|error| locate(error, &arguments.configuration))?;

@@ -9,7 +9,7 @@ use peristalsis_configuration::{Configuration, SourceFile};
 use peristalsis_reproduce::design::{
     DISTANCES, Design, NEAR, configuration_text, is_design, page, schema,
 };
-use peristalsis_run::estimate;
+use peristalsis_run::{estimate, warnings};
 
 use crate::arguments::ConfigurationArguments;
 use crate::commands::check::in_words as estimate_in_words;
@@ -69,8 +69,10 @@ pub(crate) fn design(arguments: &DesignArguments) -> Result<ExitCode, Failure> {
     if let Some(path) = &arguments.write {
         write(path, &text.unwrap_or_else(|| configuration.to_toml()))?;
     }
-    let estimate = packing(&configuration, || estimate(&configuration, None))
-        .map_err(|error| locate(error, sources))?;
+    let estimate = packing(&configuration, &warnings(&configuration), || {
+        estimate(&configuration, None)
+    })
+    .map_err(|error| locate(error, sources))?;
     let design = Design::of(&configuration, estimate).ok_or_else(no_design)?;
     if let Some(path) = &arguments.html {
         let name = crate::sources::name(sources);

@@ -105,8 +105,8 @@ fn warn_besides(said: &[Warning], warnings: &[Warning]) {
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// Packs the grains of a configuration, which may have to settle, and says so on standard error where it takes longer than
-/// one waits for in silence.
-fn packing<T>(configuration: &Configuration, work: impl FnOnce() -> T) -> T {
+/// one waits for in silence, and warnings that would come after it otherwise.
+fn packing<T>(configuration: &Configuration, warnings: &[Warning], work: impl FnOnce() -> T) -> T {
     let words = packing_words(configuration);
     let (working, ended) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
@@ -114,7 +114,10 @@ fn packing<T>(configuration: &Configuration, work: impl FnOnce() -> T) -> T {
             if ended.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
                 // Once, however many runs are packed at a time.
                 static SAID: Once = Once::new();
-                SAID.call_once(|| say(&words));
+                SAID.call_once(|| {
+                    say(&words);
+                    warn_besides(&[], warnings);
+                });
             }
         });
         let outcome = work();

@@ -154,19 +154,22 @@ impl NewtonianPeristalsis {
     ///
     /// The denominator is the mean of the wall's work against the pressure, int p d(h^2)/dx dx, in units of
     /// 8 pi mu c^2 lambda per wavelength; the rest of the power, <(1 + q/h^2)^2>, is dissipated. `None` where the wave does
-    /// not pump: unless P > 0, Q > 0 and phi < 1.
+    /// not pump: unless P > 0 and Q > 0.
     pub fn efficiency(&self) -> Option<f64> {
-        let pumps = self.pressure > 0.0 && self.flow_rate() > 0.0 && self.amplitude_ratio < 1.0;
+        let pumps = self.pressure > 0.0 && self.flow_rate() > 0.0;
         pumps.then(|| self.flow_rate() * self.pressure / self.wall_power())
     }
 
-    /// Mean power of the wall on the fluid of one wavelength, in 8 pi mu c^2 lambda; range phi < 1.
+    /// Mean power of the wall on the fluid of one wavelength, in 8 pi mu c^2 lambda.
     ///
-    /// W = P (1 + phi^2/2) + 1 + q (1 - phi^2)^(-3/2); negative where an imposed flow drives the wall.
+    /// W = P (1 + phi^2/2) + 1 + q (1 - phi^2)^(-3/2); negative where an imposed flow drives the wall. The last term is 0 at
+    /// phi = 1.
     pub fn wall_power(&self) -> f64 {
-        self.pressure * self.mean_area()
-            + 1.0
-            + self.wave_frame_flow_rate() * self.mean_inverse_square()
+        let lost = match self.amplitude_ratio < 1.0 {
+            true => self.wave_frame_flow_rate() * self.mean_inverse_square(),
+            false => 0.0,
+        };
+        self.pressure * self.mean_area() + 1.0 + lost
     }
 
     /// <h^2> = 1 + phi^2/2, the mean section of the tube.
@@ -339,6 +342,10 @@ mod tests {
         assert_eq!(closed.flow_rate_ratio(), 1.0);
         assert!(closed.zero_flow_pressure().is_infinite());
         assert_eq!(NewtonianPeristalsis::from_flow_rate(1.0, 1.5), None);
+        // The limit of nearly closed ones: Q P/(1 + 3 P/2).
+        let efficiency = |ratio: f64| flow(ratio, 3.0).efficiency().unwrap();
+        assert!((efficiency(1.0) - 4.5 / 5.5).abs() < 1e-15);
+        assert!((efficiency(1.0 - 1e-14) - efficiency(1.0)).abs() < 1e-6);
     }
 
     #[test]

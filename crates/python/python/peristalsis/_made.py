@@ -210,7 +210,7 @@ class Made(Output):
         Parameters
         ----------
         configuration : Configuration
-            All else. Its number of grains and their least and largest diameter become those of the arrays.
+            All else. The number of grains and their diameters become those of the arrays.
         positions : array_like
             Centres [d], shape (N, 3), the axis of the tube along z; z is taken into [0, L).
         velocities : array_like, optional
@@ -260,8 +260,12 @@ class Made(Output):
         if (wrong := np.flatnonzero(~((sizes > 0) & np.isfinite(sizes)))).size:
             raise ConfigurationError(f"diameters[{wrong[0]}] = {sizes[wrong[0]]} is no diameter: each is a number above 0")
         keys: dict[str, Any] = {"grains.number": len(places), "initial.state": "placed"}
-        if len(sizes):
-            keys |= {"grains.diameter_min": float(sizes.min()), "grains.diameter_max": float(sizes.max())}
+        found, counts = np.unique(sizes, return_counts=True)
+        if len(found) == 1:
+            keys |= {"grains.sizes": "uniform", "grains.diameter_min": found[0], "grains.diameter_max": found[0]}
+        elif len(found):
+            # Averages over the grains are then those of these.
+            keys |= {"grains.sizes": "table", "grains.diameters": found, "grains.fractions": counts}
         simulation = cls._of(_core.Run.placed(configuration.replace(keys), places, speeds, sizes))
         tell(simulation.warnings, simulation._told)
         return simulation

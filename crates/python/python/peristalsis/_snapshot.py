@@ -16,6 +16,7 @@ from ._title import SEPARATOR, is_prescribed, title, unit
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import EllipseCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,6 +31,8 @@ DIVERGING = LinearSegmentedColormap.from_list(
 _SHADES = ((1.0, -0.22), (0.9, -0.1), (0.74, 0.0), (0.5, 0.17), (0.3, 0.33), (0.14, 0.5))
 #: How far from the axis a snapshot shows grains, in radii of the tube.
 _REACH = 2.5
+#: Height of the label and the numbers of an axis, in points.
+_BELOW_AXIS = 36.0
 
 
 def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, first: int = 0) -> Axes:
@@ -123,8 +126,15 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
         extend: Literal["neither", "min", "max", "both"] = (
             "neither" if all(within.values()) else "max" if within[-1] else "min" if within[1] else "both"
         )
+        # Below the label of the axis, however low the axes are; a constrained layout makes room for the label itself.
+        engine = new.figure.get_layout_engine()
+        if isinstance(engine, ConstrainedLayoutEngine):
+            pad = engine.get()["h_pad"]
+        else:
+            height = new.get_window_extent().height * 72 / new.figure.dpi
+            pad = min(0.5, max(0.15, _BELOW_AXIS / height))
         new.figure.colorbar(
-            scale, ax=new, label=label, location="bottom", shrink=0.3, aspect=25, extend=extend
+            scale, ax=new, label=label, location="bottom", shrink=0.3, aspect=25, extend=extend, pad=pad
         )
     return new
 

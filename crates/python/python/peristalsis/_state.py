@@ -245,7 +245,8 @@ class State:
         -------
         Table
             ``i`` is a grain, numbered from 0 as in `positions`. Its partner ``j`` is a grain above i or, where ``wall`` is
-            true, a sphere of the wall: j - N is its row in `wall_positions`. ``overlap`` [d]; ``normal_force``, positive
+            true, a sphere of the wall: j - N is its row in `wall_positions`. A smooth wall has no spheres; there j is N, or
+            N + 1 for the second flank that a grain in a bend touches. ``overlap`` [d]; ``normal_force``, positive
             where it repels, and ``tangential_force``, a size [m d/t^2]; ``force_x``, ``_y``, ``_z``, the whole force on
             grain i, that on j being its opposite; ``tangential_x``, ``_y``, ``_z``, its part in the plane of contact;
             ``x``, ``y``, ``z``, where they touch, on the line of centres [d]; ``sliding``, whether friction slides.

@@ -97,8 +97,8 @@ class Writer:
         PyVista; ``.parquet``, a folder with a table of the grains for each frame, which pandas, polars and DuckDB read as
         one.
     every : float or str, optional
-        From one frame to the next, the first at once: in wavelengths that the wave runs, also where a schedule changes its
-        speed, or as text in time, ``"2.5t"``. A tenth of a wavelength unless `every` or `at` is given. While the wave
+        From one frame to the next, the first at once: in wavelengths that the wave runs, also where its speed changes, or as
+        text in time, ``"2.5t"``. A tenth of a wavelength unless `every` or `at` is given. While the wave
         stands still for good no frame follows.
     at : float, str, or sequence of them, optional
         Instants of single frames, counted from the start of the simulation, in the same units, as the drive is scheduled
@@ -150,6 +150,8 @@ class Writer:
         self._overwrite = overwrite
         self._simulation: Simulation | None = None
         self._frames: _core.Frames | None = None
+        # Of `every`, the clock at the next frame, in periods or in t, and its step as the wave is driven now.
+        self._goal = 0.0
         self._next: int | None = None
         self._instants: list[int] = []
 
@@ -171,14 +173,12 @@ class Writer:
         if self._simulation is None:
             return None
         now = self._simulation.steps
+        self._next = self._coming(self._simulation)
         return min((step for step in [*self._instants, self._next] if step is not None and step > now), default=None)
 
     def _begin(self, simulation: Simulation) -> None:
         """Make ready for a simulation that is about to run; writes the present state where it is one of the frames."""
         if self._simulation is simulation:
-            # It may have run without this writer, or have been set in motion again.
-            if self._next is None or self._next <= simulation.steps:
-                self._next = self._following(simulation)
             return
         if self._simulation is not None:
             raise ValueError(f"{self.path} holds frames of another simulation already")
@@ -196,6 +196,7 @@ class Writer:
         self._simulation = simulation
         self._instants = instants
         if interval or now in instants:
+            self._goal = self._clock(simulation)
             self._next = now
             self._fire(simulation)
 
@@ -203,15 +204,27 @@ class Writer:
         """Write the present state as a frame."""
         if self._frames is not None:
             self._frames.append(simulation._run)
-        if self._next == simulation.steps:
-            self._next = self._following(simulation)
+        if self._every is not None and self._next == simulation.steps:
+            self._goal += span("every", self._every)[0]
 
-    def _following(self, simulation: Simulation) -> int | None:
-        """Step of the frame after one that is due now; `None` where the wave never gets so far."""
-        try:
-            return None if self._every is None else simulation.steps + max(1, steps_to(simulation, "every", self._every))
-        except ValueError:
+    def _clock(self, simulation: Simulation) -> float:
+        """The present time that `every` counts in."""
+        is_time = self._every is not None and span("every", self._every)[1]
+        return simulation.steps * simulation.configuration.time_step if is_time else simulation.period
+
+    def _coming(self, simulation: Simulation) -> int | None:
+        """Step of the next frame of `every`, as the wave is driven now; `None` where it never gets so far."""
+        if self._every is None:
             return None
+        every, is_time = span("every", self._every)
+        now = self._clock(simulation)
+        if self._goal <= now + 1e-9:
+            # It has run without this writer, or has become so fast that frames are less than a step apart.
+            self._goal = now + every
+        ahead = self._goal - now
+        time = ahead if is_time else simulation._run.time_of_periods(ahead)
+        # Halves go up from wherever one looks, so that pieces of a run make the same frames.
+        return None if time is None else simulation.steps + max(1, math.floor(time / simulation.configuration.time_step + 0.5 + 1e-6))
 
     def _synchronize(self) -> None:
         """Bring all frames to the disk."""

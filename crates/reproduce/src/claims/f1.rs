@@ -34,6 +34,7 @@ impl<'a> AtRate<'a> for Kind<'a> {
         let threshold = branch.threshold()?;
         let fraction = |is_beyond: bool| {
             let side = rows.iter().filter(|row| match is_beyond {
+                _ if !row.is_stationary() => false,
                 true => row.width() >= after,
                 false => row.width() <= before,
             });
@@ -126,7 +127,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(judgement.statistics));
     }
     let (slow, below, near) = (SLOW, BELOW_THE_JUMP, NEAR_ONE);
-    let summary = PROSE.text("summary", values!(slow, below, near));
+    let most = number(100.0 * NEARLY_ALL, 0);
+    let summary = PROSE.text("summary", values!(slow, below, near, most));
     draft.table("kinds", values!(below), rows);
     let periods = walls.iter().map(|one| one.periods).fold(0.0, f64::max);
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));

@@ -1,6 +1,6 @@
 //! F7: how the critical width depends on the strain rate.
 
-use peristalsis_analysis::{LineFit, ScatteredLine, fit_line_to_scatter};
+use peristalsis_analysis::{LineFit, ScatteredLine, fit_line, fit_line_to_scatter};
 
 use super::prelude::*;
 
@@ -79,7 +79,14 @@ fn part(
     let way = as_the_source(one);
     let of_source = cell(way.map(|line| line.line.slope));
     let explained = cell_of(way, |line| number(line.determination, 3));
-    let why = PROSE.text("why", values!(rates, straight, of_source, explained));
+    let [rate, width, error] = columns(critical.iter().copied(), 0.0);
+    let alone = fit_line(&rate, &width, &error).ok();
+    let chi = cell_of(alone, |line| number(line.chi_squared, 0));
+    let freedom = cell_of(alone, |line| line.degrees_of_freedom.to_string());
+    let why = PROSE.text(
+        "why",
+        values!(rates, straight, chi, freedom, of_source, explained),
+    );
     let is_straight = linearity.map(|chance| chance >= BY_CHANCE);
     let holds = all_hold(&[
         is_straight,

@@ -226,7 +226,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(judgement.statistics));
     }
     let hardly = number(100.0 * HARDLY, 0);
-    let summary = PROSE.text("summary", values!(hardly));
+    let summary = PROSE.text("summary", values!(hardly, least = LEAST_DENSITIES));
     let compared = COMPARED_WIDTH;
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(compared));
     draft.table("densities", values!(compared), rows);

@@ -400,8 +400,8 @@ fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row
         sum(|one| one.ended[0]),
         sum(|one| one.ended[1]),
     );
-    let tubes = found.len();
-    draft.paragraph("lifetimes", values!(watched, tubes, void, ended, jams));
+    let (tubes, all) = (found.len(), jams + void);
+    draft.paragraph("lifetimes", values!(watched, tubes, void, ended, all));
     draft.table("lifetimes", &[], found.iter().map(Lifetime::row));
 }
 

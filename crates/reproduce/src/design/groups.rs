@@ -1,6 +1,6 @@
 //! The dimensionless groups of a tube with its grains.
 
-use peristalsis_configuration::{Configuration, Control};
+use peristalsis_configuration::{Configuration, Control, Ends, InitialState, WaveformName};
 use peristalsis_run::{overlap_at_wave_speed, restitution_at_wave_speed};
 
 /// A dimensionless group: what it is, and how far apart two of its values are.
@@ -136,6 +136,53 @@ pub const ALL: [Group; GROUPS] = [
         value: |tube| 0.0 - tube.against_the_wave(tube.configuration.axial_body_force()),
     },
 ];
+
+/// What a tube has that no group tells of and no published point has, as key and words.
+pub(super) fn unlike(configuration: &Configuration) -> Vec<&'static str> {
+    let Configuration {
+        contact,
+        drive,
+        initial,
+        tube,
+        ..
+    } = configuration;
+    let is_moved = initial.axial_velocity != 0.0 && initial.state != InitialState::Jammed;
+    let unlike = [
+        (
+            drive.waveform != WaveformName::Sine,
+            "drive.waveform: published tubes like it have a sine wave",
+        ),
+        (
+            !drive.schedules.is_empty(),
+            "drive.schedule: published tubes like it have a constant drive",
+        ),
+        (
+            tube.ends == Ends::Open,
+            "tube.ends: published tubes like it are periodic",
+        ),
+        (
+            contact.cohesion.is_some(),
+            "cohesion: grains of published tubes like it only repel",
+        ),
+        (
+            contact.rolling.is_some(),
+            "contact.rolling_friction: grains of published tubes like it roll freely",
+        ),
+        (
+            initial.temperature != 0.0,
+            "initial.temperature: grains of published tubes like it begin at rest",
+        ),
+        (
+            is_moved,
+            "initial.axial_velocity: grains of published tubes like it begin at rest, or jammed with the wave",
+        ),
+    ];
+    unlike
+        .into_iter()
+        .filter(|it| it.0)
+        .map(|it| it.1)
+        .collect()
+}
 
 impl Group {
     /// How far apart two values are.

@@ -112,7 +112,9 @@ impl Design {
             .collect();
         let si = estimate.si.as_ref();
         let largest = si.map(|si| si.largest_mass_flow_rate_kg_per_s * HOUR);
-        let expected = Start::ALL.into_iter().filter_map(|start| {
+        let mut outside = outside(configuration, &compared);
+        let starts = Start::ALL.into_iter().filter(|_| outside.is_empty());
+        let expected = starts.filter_map(|start| {
             let expectation = expectation(points, &values, start)?;
             let rate = |ratio: f64| largest.map(|largest| ratio * largest);
             Some(ExpectedFlow {
@@ -123,9 +125,12 @@ impl Design {
             })
         });
         let expected: Vec<ExpectedFlow> = expected.collect();
+        if outside.is_empty() && expected.is_empty() {
+            outside.push("each group is within the published range or near it, but no published tube has all of them like this one".to_owned());
+        }
         Some(Self {
             regime: regime(configuration, &expected),
-            outside: outside(configuration, &compared, &expected),
+            outside,
             groups: compared,
             expected,
             largest_mass_flow_rate_kg_per_h: largest,
@@ -187,11 +192,7 @@ fn regime(configuration: &Configuration, expected: &[ExpectedFlow]) -> String {
 }
 
 /// What lies outside the published runs.
-fn outside(
-    configuration: &Configuration,
-    groups: &[Compared],
-    expected: &[ExpectedFlow],
-) -> Vec<String> {
+fn outside(configuration: &Configuration, groups: &[Compared]) -> Vec<String> {
     let far = groups.iter().filter(|group| !group.is_inside());
     let mut outside: Vec<String> = far
         .map(|group| {
@@ -200,22 +201,14 @@ fn outside(
             format!("{}: {value}, published {least} to {most}", group.meaning)
         })
         .collect();
-    if configuration.drive.waveform != WaveformName::Sine {
-        outside.push("drive.waveform: what is expected is for sine waves".to_owned());
-    }
-    if !configuration.drive.schedules.is_empty() {
-        outside.push("drive.schedule: published tubes like it have a constant drive".to_owned());
-    }
+    outside.extend(groups::unlike(configuration).into_iter().map(str::to_owned));
     let size = configuration
         .units
         .map(|units| units.length() * configuration.grains.diameter_min);
     if let Some(size) = size.filter(|size| *size < SMALLEST_GRAIN) {
         outside.push(format!(
-            "grains of {size:.1e} m: below {SMALLEST_GRAIN:e} m they cohere and feel the air, which is not computed"
+            "grains of {size:.1e} m: below {SMALLEST_GRAIN:e} m they cohere, which contact.cohesion_force or surface_energy computes, and feel the air, which nothing here does"
         ));
-    }
-    if outside.is_empty() && expected.is_empty() {
-        outside.push("each group is within the published range or near it, but no published tube has all of them like this one".to_owned());
     }
     outside
 }

@@ -129,7 +129,8 @@ fn section(examination: &Examination, file: Option<&str>, figures: &str) -> Stri
         let caption = figure
             .caption
             .split_once(". ")
-            .map_or(&*figure.caption, |(first, _)| first);
+            .map_or(&*figure.caption, |(first, _)| first)
+            .trim_end_matches('.');
         let caption = markdown(caption).replace(['[', ']'], " ");
         add(&format!("![{caption}]({figures}/{file}.svg)"));
     }

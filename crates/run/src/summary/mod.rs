@@ -291,7 +291,7 @@ impl Summary {
     }
 
     /// Part of so many samples of the whole run that late means are over.
-    pub(crate) fn late_part(&self, samples: usize) -> f64 {
+    pub fn late_part(&self, samples: usize) -> f64 {
         self.late.len() as f64 / samples.max(1) as f64
     }
 

@@ -61,6 +61,26 @@ pub struct FrameFile {
     frames: u64,
 }
 
+/// The name of a frame's table.
+fn table_name(step: u64) -> String {
+    format!("frame-{step:012}.parquet")
+}
+
+/// Makes a folder of tables, or takes the tables of an older one away; other files stay.
+fn empty_folder(path: &Path) -> std::io::Result<()> {
+    std::fs::create_dir_all(path)?;
+    for entry in std::fs::read_dir(path)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let step = name.to_str().and_then(|name| name.strip_prefix("frame-"));
+        let step = step.and_then(|rest| rest.strip_suffix(".parquet")?.parse().ok());
+        if step.is_some_and(|step| name == *table_name(step)) {
+            std::fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}
+
 impl FrameFile {
     /// Begins without a frame, over an older file.
     ///
@@ -73,7 +93,7 @@ impl FrameFile {
                 Some((format, format.create_at(path, FRAMES)?))
             }
             FrameFormat::Parquet => {
-                std::fs::create_dir_all(path).map_err(|source| RunError::Folder {
+                empty_folder(path).map_err(|source| RunError::Folder {
                     folder: path.to_owned(),
                     source,
                 })?;
@@ -95,7 +115,7 @@ impl FrameFile {
         match &mut self.file {
             Some((format, file)) => file.append(&frame(run, format.has_contacts()))?,
             None => {
-                let name = format!("frame-{:012}.parquet", run.simulation().step());
+                let name = table_name(run.simulation().step());
                 parquet::write(&self.path.join(name), &grains_table(run)?)?;
             }
         }

@@ -4,14 +4,13 @@ use core::f64::consts::PI;
 
 use peristalsis_analysis::number::plain;
 use peristalsis_configuration::{Configuration, Control};
-use peristalsis_observe::{Sample, clear_volume_of_wave};
+use peristalsis_observe::clear_volume_of_wave;
 use peristalsis_physics::wall::Arrangement;
 
 use super::softness::{LARGEST_OVERLAP, Material};
 use super::threshold;
 use super::warning::Warning;
 use crate::run::Run;
-use crate::summary::mean_of;
 
 /// Overlap over diameter above which soft spheres no longer pass for solid grains, where no units say of what material they
 /// are.
@@ -142,8 +141,8 @@ fn ran_dry(run: &Run) -> Option<Warning> {
 
 /// Part of the clear volume that grains at rest fill at least, in a tube that is full.
 const FULL: f64 = 0.5;
-/// Growth of the mass in the tube from the first half of the late part to the second from which on it still fills up.
-const FILLS_UP: f64 = 1.05;
+/// Growth of the mass in the tube over what leaves meanwhile, in the late part, from which on it still fills up.
+const FILLS_UP: f64 = 0.1;
 
 /// That an inlet does not keep a tube full whose wave stands, though grains wait: what leaves is what comes in.
 fn emptied(run: &Run) -> Option<Warning> {
@@ -154,8 +153,8 @@ fn emptied(run: &Run) -> Option<Warning> {
     let clear = f64::from(configuration.tube.waves) * clear_volume_of_wave(simulation);
     // A grain of mass m has the volume pi m/6.
     let filled = PI / 6.0 * last.hold_up / clear;
-    let (before, after) = late.split_at(late.len() / 2);
-    let held = |samples: &[Sample]| mean_of(samples, |sample| sample.hold_up);
+    let grown = last.hold_up - first.hold_up;
+    let left = last.discharged - first.discharged;
     let message = format!(
         "grains fill {:.0} % of the tube and no more, though {} wait: the outlet lets out what the inlet puts in, and could let \
          out more; take a larger inlet.velocity ({}) and a longer inlet.length ({})",
@@ -166,9 +165,8 @@ fn emptied(run: &Run) -> Option<Warning> {
     );
     let key = "inlet.velocity";
     let stands = configuration.drive.period().is_none() && inlet.feed_rate.is_none();
-    let flows = last.discharged > first.discharged && ends.waiting() > 0;
-    let is_emptied = filled < FULL && held(after) < FILLS_UP * held(before);
-    (stands && flows && is_emptied).then_some(Warning { key, message })
+    let is_emptied = filled < FULL && left > 0.0 && grown < FILLS_UP * left;
+    (stands && ends.waiting() > 0 && is_emptied).then_some(Warning { key, message })
 }
 
 /// That grains have left the tube.

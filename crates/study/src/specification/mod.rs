@@ -454,6 +454,11 @@ fn refinement(
             origin: origin.clone(),
         });
     }
+    // An axis that was refused may be the one meant.
+    let axes_given = document::entry(table, "axes").map(|entry| &entry.item.node);
+    if matches!(axes_given, Some(Node::Array(items)) if items.len() > axes.len()) {
+        return None;
+    }
     let candidates = axes.iter().filter(|axis| can_be(axis));
     let candidates: Vec<&str> = candidates.map(|axis| axis.keys[0].0.as_str()).collect();
     let problem = Problem::new(

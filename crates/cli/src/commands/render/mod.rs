@@ -245,7 +245,7 @@ fn still(
 /// The same run at t = 0.
 fn start_of(run: &Run) -> Result<Run, Failure> {
     let configuration = run.configuration().clone();
-    packing(&configuration.clone(), || Run::new(configuration)).map_err(|error| match error {
+    packing(&configuration.clone(), &[], || Run::new(configuration)).map_err(|error| match error {
         RunError::NotPlaced => Failure::usage(
             "a program placed the grains at the start of this run, from which this counts",
             "take --from trajectory, if there is one, or --from state with another --colour than axial-displacement",

@@ -239,7 +239,7 @@ fn packed(
     let pack = || Run::new_unless(configuration, &|| stop.is_asked_for());
     let run = match arguments.quiet {
         true => pack(),
-        false => packing(&described, pack),
+        false => packing(&described, &[], pack),
     };
     run.map_err(|error| locate(error, &arguments.configuration))
 }

@@ -90,7 +90,7 @@ pub(super) fn is_too_short(summary: &Summary) -> bool {
 /// The late flow beside that of a Newtonian fluid, and whether it still changes.
 fn flow(run: &Run, summary: &Summary) -> String {
     let configuration = run.configuration();
-    let late = rounded(100.0 * configuration.observe.late_fraction, 3);
+    let late = rounded(100.0 * summary.late_part(run.recorder().samples().len()), 3);
     let (ratio, error) = summary.flow_rate_ratio;
     let said = measured(summary.flow_rate_ratio);
     let mut flow = match known_error(ratio, error) {

@@ -142,7 +142,7 @@ fn check(arguments: &ViewArguments) -> Result<(), Failure> {
 fn open(arguments: &ViewArguments, stop: &Stop) -> Result<(Run, Options), Failure> {
     let packed = |configuration: Configuration| {
         let described = configuration.clone();
-        packing(&described, || {
+        packing(&described, &[], || {
             Run::new_unless(configuration, &|| stop.is_asked_for())
         })
     };

@@ -58,6 +58,10 @@ impl Drags {
             let is_here =
                 |row: &&Row<'_>| row.strain_rate() == strain_rate && row.lattice() == lattice;
             let here: Vec<Row<'_>> = critical.iter().filter(is_here).copied().collect();
+            let critical = crossing(&here).map(|found| found.width);
+            if leak(&here, critical.map(|width| width.value)) > MOST_ESCAPED {
+                return None;
+            }
             Some(Self {
                 strain_rate,
                 wall: wall_name(lattice, STAGGERED),
@@ -65,7 +69,7 @@ impl Drags {
                 taken: scattered(&rows, taken),
                 given: given.filter(|(_, rate)| rate.value.is_finite()).collect(),
                 diameter: 2.0 * rows[0].radius(),
-                critical: crossing(&here).map(|found| found.width),
+                critical,
             })
         };
         Ok(tubes.into_iter().filter_map(of).collect())

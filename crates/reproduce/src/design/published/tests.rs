@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use peristalsis_configuration::{Configuration, InitialState, WaveformName};
+use peristalsis_configuration::Configuration;
 use peristalsis_formats::{Table, Values, csv, parquet};
 use peristalsis_physics::wall::Arrangement;
 
 use super::*;
-use crate::design::groups;
+use crate::design::groups::{groups, unlike};
 use crate::row::{Row, rows_of};
 use crate::thresholds::MOST_ESCAPED;
 use crate::{STUDIES, Size, StudyFile};
@@ -99,11 +99,6 @@ fn points_of(studies: &[(&StudyFile, Table)]) -> Vec<Point> {
 
 /// The groups of a tube that others are compared with.
 fn comparable(configuration: &Configuration) -> Option<[f64; GROUPS]> {
-    let moving = configuration.initial.axial_velocity;
-    let is_moved = moving != 0.0 && configuration.initial.state != InitialState::Jammed;
-    let drive = &configuration.drive;
-    let is_plain = configuration.tube.arrangement == Arrangement::Staggered
-        && drive.waveform == WaveformName::Sine
-        && drive.schedules.is_empty();
-    groups(configuration).filter(|_| is_plain && !is_moved)
+    let is_staggered = configuration.tube.arrangement == Arrangement::Staggered;
+    groups(configuration).filter(|_| is_staggered && unlike(configuration).is_empty())
 }
