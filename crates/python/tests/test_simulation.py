@@ -572,7 +572,7 @@ def test_averages_over_grains_that_were_placed_are_those_of_these() -> None:
     places = np.c_[np.zeros((15, 2)), np.arange(15) * 1.3 + 0.2]
     for diameters in (np.r_[0.4, np.ones(14)], np.full(15, 0.7)):
         sim = Simulation.from_positions(tube, places, diameters=diameters)
-        expected = (diameters**3).sum() / (6 * tube.radius**2 * tube.length)
+        expected = (diameters**3).sum() / (6 * tube["tube.radius"] ** 2 * tube.length)
         assert sim.configuration.volume_fraction == pytest.approx(expected)
         again = Simulation.from_bytes(sim.to_bytes())
         assert again.configuration == sim.configuration

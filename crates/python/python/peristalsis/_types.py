@@ -274,7 +274,8 @@ class Keywords(TypedDict, total=False):
     """contact.restitution. Restitution e of two grains of the mean diameter that meet head-on. Give it instead of
     normal_damping (linear law) or dissipation_time (Hertz law), which then follow. Linear law: e = exp(-pi
     beta/sqrt(k/m_ij - beta^2)), beta = eta/(2 m_ij), at any speed. Hertz law: by integration of an impact at
-    restitution_speed; e falls with the speed. (A pure number.)"""
+    restitution_speed; e falls with the speed. Cohesion is left out of it: with cohesion impacts give back less, and
+    slow grains stick. (A pure number.)"""
     restitution_speed: float
     """contact.restitution_speed. Relative speed at which restitution holds under the Hertz law. Default: the speed
     of the wave. Give it in a study of several strain rates, or each has its own material. A static wave needs it.
