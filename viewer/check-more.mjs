@@ -242,6 +242,13 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     await until(page, () => window.viewer.shownFrame?.aims.width > 3.4);
     await close();
     other.end();
+    const led = await serve("frictionless", "--set", 'drive.schedule={form="ramp",parameter="width",from=3.0,to=2.5,end=100}');
+    const { page: scheduled, close: closeScheduled } = await open(browser, led.address, desk);
+    await scheduled.click("#sweep");
+    await until(scheduled, () => /drive\.width still follows its schedule/.test(document.getElementById("status").textContent));
+    assert.equal(await scheduled.getAttribute("#sweep", "aria-pressed"), "false");
+    await closeScheduled();
+    led.end();
   }
 
   /** An open tube whose wave stands: no flow rate over the largest, no periods, no images. */

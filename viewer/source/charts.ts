@@ -178,7 +178,8 @@ export class Chart {
     for (const [tick, text] of named(this.x.ticks(across / apart))) {
       context.strokeStyle = colours.line;
       this.line(this.x.at(tick), top, this.x.at(tick), top + high);
-      context.fillText(text, this.x.at(tick), top + high + 5);
+      // The last one stays within the picture.
+      context.fillText(text, Math.min(this.x.at(tick), width - wide(text) / 2 - 1), top + high + 5);
     }
     context.textAlign = "right";
     context.textBaseline = "middle";

@@ -92,6 +92,8 @@ class Page {
     else if (message.type === "missing") this.missing(message.number, message.message);
     else if (message.type === "course") this.address.take(message);
     else {
+      // What is refused to a sweep is refused at each of its steps.
+      this.sweep.end();
       say(message.message, true, this.newest()?.ended);
       if (!this.tube) element("facts").textContent = message.message;
     }

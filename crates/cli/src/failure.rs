@@ -333,7 +333,8 @@ fn of_study(error: &StudyError) -> Advice {
         | StudyError::NotRows { .. } => (BAD_INPUT, None),
         StudyError::Trial { source, .. } => (BAD_INPUT, of_run(source).1),
         error if error.is_closed() => failed(
-            "nothing that was finished is lost: make the store writable for this user, or work in a copy of it",
+            "nothing that was finished is lost: make the store writable for this user, or the folder that is named; or take \
+             another folder, such as a copy of the store",
         ),
         StudyError::Io { source, .. } | StudyError::Format(FormatError::Io { source, .. })
             if matches!(
@@ -342,6 +343,9 @@ fn of_study(error: &StudyError) -> Advice {
             ) =>
         {
             wrong("a file has the name of a folder: name another")
+        }
+        StudyError::Io { source, .. } if source.kind() == ErrorKind::InvalidFilename => {
+            wrong("take a folder with a shorter path")
         }
         StudyError::Io { .. }
         | StudyError::Format(_)

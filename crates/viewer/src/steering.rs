@@ -19,10 +19,20 @@ pub(crate) struct Steering {
 }
 
 impl Steering {
-    /// A slider is moved.
-    pub(crate) fn want(&mut self, parameter: Steered, value: f64) {
+    /// A slider is moved. One whose parameter follows a schedule of the configuration, and not the slider's own ramp, is
+    /// refused.
+    pub(crate) fn want(
+        &mut self,
+        run: &Run,
+        parameter: Steered,
+        value: f64,
+    ) -> Result<(), RunError> {
+        if let Some(scheduled) = scheduled(parameter) {
+            run.check_free(scheduled, RAMP)?;
+        }
         self.wanted[parameter as usize] = Some(value);
         self.aim(parameter, value);
+        Ok(())
     }
 
     /// A slider stands at a value that the run was led to.

@@ -76,7 +76,8 @@ pub(crate) struct Tube {
     contacts: bool,
     /// Rows that the page has got; of several clients each may lack others.
     told: Cell<usize>,
-    /// The warnings of the run as they were after so many periods, jumps and changes of the drive.
+    /// The warnings of the run as they were after so many periods and samples of the first period, jumps and changes of the
+    /// drive.
     warned: ((usize, u64, usize), Vec<Warning>),
 }
 
@@ -170,7 +171,7 @@ impl Tube {
                 self.seeking = Some((step / each + 1) * each);
             }
             Command::Steer { parameter, value } => {
-                self.steering.want(parameter, value);
+                self.steering.want(&self.run, parameter, value)?;
                 self.course.leave();
                 if !self.playing {
                     self.steer()?;
@@ -265,8 +266,12 @@ impl Tube {
                 self.tell(&error.to_string());
             }
         }
-        let periods = self.run.recorder().averages().len();
-        let now = (periods, self.epoch, self.course.turns().len());
+        let recorder = self.run.recorder();
+        let periods = recorder.averages().len();
+        // A tube that leaks does so from the start, and periods may last.
+        let of_first_period = self.run.configuration().observe.samples_per_period as usize;
+        let samples = recorder.samples().len().min(of_first_period);
+        let now = (periods + samples, self.epoch, self.course.turns().len());
         if self.warned.0 != now {
             self.warned = (now, self.run.warnings());
         }

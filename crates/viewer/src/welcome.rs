@@ -85,9 +85,12 @@ impl Ranges {
         let narrowest = |width: f64| (1.6 * diameter).min(width).min(widest);
         let moving = own.strain_rate.filter(|rate| *rate > 0.0);
         let strongest = |force: f64| (0.0, (2.5 * force).max(0.008));
+        // A wave that stands has no periods in which it could be led.
+        let moves = |_: &f64| drive.period().is_some();
+        let (width, force_amplitude) = (own.width.filter(moves), own.force_amplitude.filter(moves));
         Self {
-            width: own.width.map(|width| (narrowest(width), widest)),
-            force_amplitude: own.force_amplitude.map(strongest),
+            width: width.map(|width| (narrowest(width), widest)),
+            force_amplitude: force_amplitude.map(strongest),
             strain_rate: moving.map(|rate| (round(0.1 * rate), round(4.0 * rate))),
             friction: own.friction.map(|kinetic| (0.01, kinetic.max(1.0))),
         }

@@ -33,6 +33,11 @@ fn time_of_cycles(frequency: &Course, now: f64, cycles: f64) -> Option<f64> {
     Some(most - now)
 }
 
+fn still_follows(parameter: ScheduledParameter) -> RunError {
+    let reason = format!("drive.{} still follows its schedule", word(parameter));
+    RunError::Steering { reason }
+}
+
 impl Run {
     /// The value of a parameter of the drive for the next step, in the units of its key; `None` for the amplitude of the other
     /// control.
@@ -56,6 +61,18 @@ impl Run {
     pub fn is_at_rest(&self, parameter: ScheduledParameter) -> bool {
         self.schedule(parameter)
             .is_none_or(|schedule| schedule.rest() <= self.soonest())
+    }
+
+    /// Refuses a parameter of the drive that its schedule still leads for more than so many periods.
+    ///
+    /// # Errors
+    /// [`RunError::Steering`].
+    pub fn check_free(&self, parameter: ScheduledParameter, periods: f64) -> Result<(), RunError> {
+        let free_from = self.soonest() + periods;
+        match self.schedule(parameter) {
+            Some(schedule) if schedule.rest() > free_from => Err(still_follows(parameter)),
+            _ => Ok(()),
+        }
     }
 
     /// The value that a parameter of the drive has now, if it could be led to `value`.
@@ -117,8 +134,7 @@ impl Run {
             .unwrap_or_else(|| Schedule::resting(parameter, now))
             .going_on(start, start + periods, value);
         let Some(schedule) = going_on else {
-            let reason = format!("drive.{} still follows its schedule", word(parameter));
-            return Err(RunError::Steering { reason });
+            return Err(still_follows(parameter));
         };
         let mut configuration = self.configuration.clone();
         let schedules = &mut configuration.drive.schedules;

@@ -36,6 +36,9 @@ const ENTRIES: &str = "SELECT identity, state, reason, row, transition_time, sta
 /// The same without rows and stamps, which are most of it.
 const FINDINGS: &str = "SELECT identity, state, reason, NULL, transition_time, NULL FROM runs";
 
+/// Bytes of a path that SQLite opens, with its journal beside it.
+const LONGEST_PATH: usize = 500;
+
 impl Index {
     /// Opens the index, and answers whether it is new and has to be filled from the files.
     pub(crate) fn open(path: &Path) -> Result<(Self, bool)> {
@@ -64,6 +67,14 @@ impl Index {
     }
 
     fn try_open(path: &Path) -> Result<(Self, bool)> {
+        let length = std::path::absolute(path).map_or(0, |path| path.as_os_str().len());
+        if length > LONGEST_PATH {
+            let reason = format!(
+                "its path has {length} bytes, and an index opens with {LONGEST_PATH} at most"
+            );
+            let error = std::io::Error::new(std::io::ErrorKind::InvalidFilename, reason);
+            return Err(StudyError::io("open", path)(error));
+        }
         let mut connection = Connection::open(path).map_err(failed(path))?;
         let is_new = prepare(&mut connection).map_err(failed(path))?;
         let path = path.to_owned();

@@ -182,6 +182,33 @@ fn the_command_for_a_standing_wave_beyond_its_end_makes_it_longer() {
     }
 }
 
+/// A lecturer: the slider of a width that follows a schedule was taken, and led nothing.
+#[test]
+fn a_slider_does_not_lead_what_a_schedule_leads_nor_a_wave_that_stands() {
+    let ramp = "drive.schedule={form=\"ramp\", parameter=\"width\", from=3.0, to=2.5, end=2}";
+    let served = Served::new("frictionless", &["tube.waves=2", ramp]);
+    let (mut client, _) = served.client();
+    client.send(r#"{"type":"seek","period":1}"#);
+    client.frame_with(|head| head["clock"] == 1.0);
+    let steer = r#"{"type":"steer","parameter":"width","value":2.9}"#;
+    client.send(steer);
+    assert!(
+        client
+            .notice()
+            .to_string()
+            .contains("drive.width still follows its schedule")
+    );
+    client.send(r#"{"type":"seek","period":2.5}"#);
+    let free = client.frame_with(|head| head["clock"] == 2.5);
+    assert_eq!(free.head["aims"]["width"], 2.5);
+    client.send(steer);
+    client.send(r#"{"type":"seek","period":3}"#);
+    client.frame_with(|head| head["driven"]["width"] == 2.9);
+    let standing = Served::new("frictionless", &["drive.strain_rate=0", "run.duration=1"]);
+    let (_, welcome) = standing.client();
+    assert!(welcome["ranges"]["width"].is_null());
+}
+
 /// VIEWER, critical 3: three drags of a slider lie between the mark and the time that is shown.
 #[test]
 fn going_back_steers_again_as_it_was_steered() {
