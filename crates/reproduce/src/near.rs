@@ -19,6 +19,8 @@ pub(crate) struct Near {
     pub(crate) curved: Option<InverseFit>,
     /// tau = A d^−alpha over the same widths as `curved`.
     pub(crate) power: Option<LawFit>,
+    /// w_c of laws that were left out, since runs jam beyond it.
+    left_out: Vec<f64>,
     /// The power law of the fewest widths that a fit can use, by the likelihood of all runs there.
     nearest: Option<Divergence>,
     /// Widths, chi_tau and its errors.
@@ -48,6 +50,13 @@ impl Near {
         // A law whose w_c lies within the widths at which runs jam, many or few, is left out.
         let is_beyond = |critical: Uncertain| critical.value > last && !critical.is_below(last_jam);
         let curved = fit_inverse_parabola(width, time, error).ok();
+        let power = fit_law(Law::Power, width, time, error, None).ok();
+        let of_laws = [
+            curved.map(|fit| fit.critical_width),
+            power.and_then(|fit| fit.critical_width),
+        ];
+        let left_out = of_laws.into_iter().flatten().filter(|w_c| !is_beyond(*w_c));
+        let left_out = left_out.map(|w_c| w_c.value).collect();
         let curved = curved.filter(|fit| is_beyond(fit.critical_width));
         // The widths of the straight line: those near x = 1, at least the nearest four.
         let unit = line.strain_rate.powf(1.5);
@@ -59,12 +68,12 @@ impl Near {
         let relative = fits
             .iter()
             .filter_map(|(width, fit)| Some((*width, fit.relative_variance()?)));
-        let power = fit_law(Law::Power, width, time, error, None).ok();
         Some(Self {
             strain_rate: line.strain_rate,
             straight: fit_inverse_line(&width[first..], &time[first..], &error[first..]).ok(),
             curved,
             power: power.filter(|fit| fit.critical_width.is_some_and(is_beyond)),
+            left_out,
             nearest: line.nearest(),
             variance: columns(variance.filter(|(_, one)| one.value > 0.0), 0.0),
             relative: columns(relative.filter(|(_, one)| one.value > 0.0), 0.0),
@@ -178,11 +187,15 @@ impl Near {
     }
 
     /// w_c midway between the fits with free alpha and with alpha = 1; its error is the larger of theirs and half their
-    /// distance, added in quadrature. Where neither law holds, that by the likelihood of all runs.
+    /// distance, added in quadrature. Where both are left out, that by the likelihood of all runs, which clings to the runs
+    /// that jam last: its error grows by the distance of the farther law.
     pub(crate) fn critical_width(&self) -> Option<Uncertain> {
         let [linear, power, of_all] = self.critical_widths();
         let (Some(one), Some(other)) = (power.or(linear), linear.or(power)) else {
-            return of_all;
+            let of_all = of_all?;
+            let distances = self.left_out.iter().map(|law| (law - of_all.value).abs());
+            let error = of_all.error.hypot(distances.fold(0.0, f64::max));
+            return Some(Uncertain::normal(of_all.value, error));
         };
         let half = 0.5 * (one.value - other.value);
         let error = one.error.max(other.error).hypot(half);
