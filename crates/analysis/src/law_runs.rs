@@ -55,7 +55,7 @@ pub struct WindowRunsFit {
 /// transition. At given w_c and k the likelihood is concave in (ln A, B) and solved by Newton's method; w_c is searched
 /// from a grid. Intervals by profile likelihood (1/2 and 1.92 below the largest), the standard error being half of the
 /// narrow one (infinite where that is open). All of it assumes the family. A wrong one biases w_c and B where runs are
-/// censored (its tail stands for the times that were not seen): compare families by [`akaike`](LawRunsFit::akaike).
+/// censored (its tail stands for the times that were not seen): compare families by Akaike's 2 p - 2 ln L, p parameters.
 /// Without censoring below w_c it only misjudges the errors. Source: Kalbfleisch & Prentice, The Statistical Analysis of
 /// Failure Time Data (2002), chapter 3 (regression under censoring); Venzon & Moolgavkar, Appl. Stat. 37, 87 (1988)
 /// (profile likelihood).
