@@ -96,7 +96,7 @@ struct Crossing {
 /// at rest or 1 jammed, at t = 0, so that a run that is beyond the threshold in its first period has 0 <= tau < T/2:
 /// 0 where the initial state is not short of the threshold either.
 /// Until a crossing is confirmed the run counts as censored at the end of its last period, though the crossing, once
-/// confirmed, lies up to three periods before that time: see [`candidate`](Self::candidate).
+/// confirmed, lies up to three periods before that time.
 ///
 /// ```
 /// use peristalsis_analysis::{Direction, Transition, TransitionDetector};
