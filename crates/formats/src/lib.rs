@@ -9,8 +9,8 @@
 //! | [`trajectory`] | spheres frame by frame, as GSD, VTP and LAMMPS text |
 //! | [`atomic`] | a file is written whole or not at all |
 //!
-//! The file modules share their verbs: `encode` and `decode` work on bytes, `write` and `read` on a path. A checkpoint is
-//! decoded only, for its bytes say which physics it is of.
+//! The file modules share their verbs: `encode` and `decode` work on bytes, `write` and `read` on a path. There is no `read`
+//! of a checkpoint: whoever decodes one first asks its bytes for the physics (`physics_hash`).
 
 #![forbid(unsafe_code)]
 

@@ -220,7 +220,8 @@ fn outside_the_data_nothing_is_expected_and_within_it_the_flow_is_that_of_the_ro
     // What no group tells of: a design's user was foretold the flow of the tube without it.
     for (key, more) in [
         ("tube.ends", &["tube.ends=open"][..]),
-        ("cohesion", &["contact.cohesion_force=0.3"]),
+        ("contact.cohesion_force", &["contact.cohesion_force=0.3"]),
+        ("tube.arrangement", &["tube.arrangement=aligned"]),
         (
             "contact.rolling_friction",
             &[

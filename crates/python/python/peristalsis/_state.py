@@ -245,8 +245,9 @@ class State:
         -------
         Table
             ``i`` is a grain, numbered from 0 as in `positions`. Its partner ``j`` is a grain above i or, where ``wall`` is
-            true, a sphere of the wall: j - N is its row in `wall_positions`. A smooth wall has no spheres; there j is N, or
-            N + 1 for the second flank that a grain in a bend touches. ``overlap`` [d]; ``normal_force``, positive
+            true, a sphere of the wall: j - N is its row in `wall_positions`. A smooth wall has no spheres; there j - N is 0
+            on the nearer side of the axis and 1 on the other, or, where a side is touched more than once, 2 and 3, 4 and 5
+            and so on in the order of z. ``overlap`` [d]; ``normal_force``, positive
             where it repels, and ``tangential_force``, a size [m d/t^2]; ``force_x``, ``_y``, ``_z``, the whole force on
             grain i, that on j being its opposite; ``tangential_x``, ``_y``, ``_z``, its part in the plane of contact;
             ``x``, ``y``, ``z``, where they touch, on the line of centres [d]; ``sliding``, whether friction slides.

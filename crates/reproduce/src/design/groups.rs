@@ -1,6 +1,8 @@
 //! The dimensionless groups of a tube with its grains.
 
-use peristalsis_configuration::{Configuration, Control, Ends, InitialState, WaveformName};
+use peristalsis_configuration::{
+    Arrangement, Configuration, Control, Ends, InitialState, WaveformName,
+};
 use peristalsis_run::{overlap_at_wave_speed, restitution_at_wave_speed};
 
 /// A dimensionless group: what it is, and how far apart two of its values are.
@@ -147,7 +149,15 @@ pub(super) fn unlike(configuration: &Configuration) -> Vec<&'static str> {
         ..
     } = configuration;
     let is_moved = initial.axial_velocity != 0.0 && initial.state != InitialState::Jammed;
+    let is_other_wall = !matches!(
+        tube.arrangement,
+        Arrangement::Staggered | Arrangement::Smooth
+    );
     let unlike = [
+        (
+            is_other_wall,
+            "tube.arrangement: rings of published tubes like it are staggered, and stand for smooth walls too",
+        ),
         (
             drive.waveform != WaveformName::Sine,
             "drive.waveform: published tubes like it have a sine wave",
@@ -162,7 +172,7 @@ pub(super) fn unlike(configuration: &Configuration) -> Vec<&'static str> {
         ),
         (
             contact.cohesion.is_some(),
-            "cohesion: grains of published tubes like it only repel",
+            "contact.cohesion_force or surface_energy: grains of published tubes like it only repel",
         ),
         (
             contact.rolling.is_some(),

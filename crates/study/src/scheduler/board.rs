@@ -22,6 +22,8 @@ pub struct Board {
     pub left: Option<Duration>,
     /// Work of each worker of this process.
     pub workers: Vec<Option<Working>>,
+    /// Runs that other programs hold, where this one has nothing to do but to wait for them.
+    pub waits_for: usize,
     /// Running estimates of the critical value, one for each combination of the other axes.
     pub brackets: Vec<Bracket>,
     /// What happened since the last look, in words: runs that failed, files that were moved aside.

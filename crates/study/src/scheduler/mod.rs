@@ -78,6 +78,8 @@ struct Common {
     error: Option<StudyError>,
     /// Threads at work.
     active: usize,
+    /// Runs that were leased when a thread found no other last; 0 since one was found.
+    leased: usize,
 }
 
 impl Common {
@@ -179,6 +181,7 @@ pub fn work_on(
         taken_up: HashMap::new(),
         error: None,
         active: workers,
+        leased: 0,
     };
     common.refresh(study)?;
     let shared = Shared {
@@ -286,6 +289,8 @@ impl Gauge {
         working: Vec<Option<Working>>,
         is_last: bool,
     ) {
+        let is_idle = working.iter().all(Option::is_none);
+        self.board.waits_for = if is_idle { common.leased } else { 0 };
         self.board.workers = working;
         self.board.news = std::mem::take(&mut common.news);
         let is_old = |last: Instant| last.elapsed() > MEASUREMENT;

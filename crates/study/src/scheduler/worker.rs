@@ -30,9 +30,13 @@ pub(super) fn work(shared: &Shared<'_>, slot: usize) {
 fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<()> {
     while !shared.is_stopped() {
         match shared.claim()? {
-            Claim::Taken(identity) => attend(shared, slot, identity)?,
-            Claim::Wait { .. } => {
+            Claim::Taken(identity) => {
+                shared.common().leased = 0;
+                attend(shared, slot, identity)?;
+            }
+            Claim::Wait { leased } => {
                 shared.working()[slot] = None;
+                shared.common().leased = leased;
                 shared.wait(IDLE);
             }
             Claim::Nothing => break,

@@ -67,7 +67,13 @@ impl Index {
     }
 
     fn try_open(path: &Path) -> Result<(Self, bool)> {
-        let length = std::path::absolute(path).map_or(0, |path| path.as_os_str().len());
+        let folder = path.parent().and_then(|folder| folder.canonicalize().ok());
+        let length = folder.map_or(0, |folder| {
+            folder
+                .join(path.file_name().unwrap_or_default())
+                .as_os_str()
+                .len()
+        });
         if length > LONGEST_PATH {
             let reason = format!(
                 "its path has {length} bytes, and an index opens with {LONGEST_PATH} at most"

@@ -95,9 +95,9 @@ pub(crate) fn overall(board: &Board, part: &str, left: Option<Duration>) -> Stri
         text.push_str(&format!(", {} failed", board.failed));
     }
     text.push_str(part);
-    let is_idle = !board.workers.is_empty() && board.workers.iter().all(Option::is_none);
-    if left.is_some() && is_idle && board.done + board.failed < board.total {
-        text.push_str(", waits for runs that other programs hold (study why RUN says which)");
+    if board.waits_for > 0 {
+        let runs = counted(board.waits_for, "run");
+        text.push_str(&format!(", waits for {runs} that other programs hold"));
     } else if let Some(left) = left {
         text.push_str(&format!(", {} left", seconds(left.as_secs_f64())));
     }
