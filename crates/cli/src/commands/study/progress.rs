@@ -95,7 +95,7 @@ pub(crate) fn overall(board: &Board, part: &str, left: Option<Duration>) -> Stri
         text.push_str(&format!(", {} failed", board.failed));
     }
     text.push_str(part);
-    if board.waits_for > 0 {
+    if board.waits_for > 0 && board.done + board.failed < board.total {
         let runs = counted(board.waits_for, "run");
         text.push_str(&format!(", waits for {runs} that other programs hold"));
     } else if let Some(left) = left {
