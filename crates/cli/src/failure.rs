@@ -287,7 +287,9 @@ fn of_run(error: &RunError) -> Advice {
         }
         RunError::Engine(EngineError::NotSettled { .. }) => failed(
             "close the throat (drive.width), lower what pushes the grains along the tube (drive.body_force, the \
-             back_pressure of a design, body.gravity), or begin with initial.state = \"rest\"",
+             back_pressure of a design, body.gravity), or begin with initial.state = \"rest\". With [units] see whether \
+             `check` with that start says the gravity that you mean (units.acceleration gives it in m/s^2), and take a larger \
+             stiffness where weight crushes the grains",
         ),
         RunError::NoMemory { .. } => wrong(
             "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)",

@@ -129,7 +129,7 @@ fn units(estimate: &Estimate) -> Vec<String> {
             [si.wave_frequency_hz, si.wave_speed_m_per_s].map(|it| significant(it, 4));
         wave = format!("; a wave of {frequency} Hz, {speed} m/s");
         let largest = significant(HOUR * si.largest_mass_flow_rate_kg_per_s, 4);
-        flow = format!("; at most {largest} kg/h");
+        flow = format!("; {largest} kg/h if all grains go with the wave");
     }
     if si.fastest_wave_frequency_hz != si.wave_frequency_hz {
         let frequency = significant(si.fastest_wave_frequency_hz, 4);

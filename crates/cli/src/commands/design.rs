@@ -166,7 +166,7 @@ fn in_words(design: &Design) -> String {
     if let Some(largest) = design.largest_mass_flow_rate_kg_per_h {
         let largest = significant(largest, 3);
         lines.push(format!(
-            "at most           {largest} kg/h, all grains with the wave"
+            "no slip           {largest} kg/h, all grains with the wave"
         ));
     }
     for line in &design.outside {

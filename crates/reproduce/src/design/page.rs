@@ -39,7 +39,7 @@ pub fn page(design: &Design, name: &str, cost: &str) -> String {
                             }
                         }
                         @if let Some(largest) = design.largest_mass_flow_rate_kg_per_h {
-                            p { "At most " (rounded(largest)) " kg/h, all grains with the wave." }
+                            p { "Without slip " (rounded(largest)) " kg/h, all grains with the wave." }
                         }
                         h2 { "Dimensionless groups" }
                         div.scroll {

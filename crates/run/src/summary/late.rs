@@ -34,7 +34,12 @@ impl Late {
             true => (samples_per_period / common) as usize,
             false => 1,
         };
-        Self::in_blocks(recorder.late(fraction), block)
+        let (all, mut late) = (recorder.samples(), recorder.late(fraction));
+        if late.len() < block && all.len() >= block {
+            // The last whole period at least.
+            late = &all[all.len() - block..];
+        }
+        Self::in_blocks(late, block)
     }
 
     fn in_blocks(late: &[Sample], block: usize) -> Self {

@@ -2,12 +2,12 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_analysis::number::plain;
+use peristalsis_analysis::number::{plain, significant};
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_observe::clear_volume_of_wave;
 use peristalsis_physics::wall::Arrangement;
 
-use super::softness::{LARGEST_OVERLAP, Material};
+use super::softness::{LARGEST_OVERLAP, Material, scaled_with};
 use super::threshold;
 use super::warning::Warning;
 use crate::run::Run;
@@ -69,14 +69,36 @@ fn overlapped(configuration: &Configuration, overlap: f64, limit: f64) -> Warnin
             (key, harder)
         }
     };
+    let besides = configuration.units.as_ref().map(|units| {
+        let with_it = scaled_with(configuration, Material::of(units).name, None);
+        with_it + &squeezed(configuration).unwrap_or_default()
+    });
     let message = format!(
-        "grains overlapped by up to {:.0} % of {}, with each other or with the wall; beyond {:.0} % soft spheres \
-         no longer pass for solid grains: take {harder}, fewer grains, a wider tube or a weaker drive",
-        100.0 * overlap,
+        "grains overlapped by up to {} % of {}, with each other or with the wall; beyond {:.0} % soft spheres \
+         no longer pass for solid grains: take {harder}, fewer grains, a wider tube or a weaker drive{}",
+        significant(100.0 * overlap, if overlap < 1.1 * limit { 3 } else { 2 }),
         of_whom(configuration),
-        100.0 * limit
+        100.0 * limit,
+        besides.unwrap_or_default()
     );
     Warning { key, message }
+}
+
+/// Width of a clear throat, in the largest grains, below which its wall may press grains however hard they are.
+const NARROW: f64 = 3.0;
+
+/// That a narrow throat may be what presses the grains.
+fn squeezed(configuration: &Configuration) -> Option<String> {
+    let Control::Strain { width } = configuration.drive.control else {
+        return None;
+    };
+    let clear = (width - configuration.wall.sphere_diameter) / configuration.grains.diameter_max;
+    (clear < NARROW).then(|| {
+        format!(
+            ". Where that does not help, the throat squeezes them, whose clear opening is {} grains: take a wider one",
+            significant(clear.max(0.0), 2)
+        )
+    })
 }
 
 fn of_whom(configuration: &Configuration) -> &'static str {

@@ -57,7 +57,7 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
                  (without it a larger {name} makes the wave faster, and the overlap stays){}",
                 significant(harder, 3),
                 significant(frequency, 3),
-                scaled_with(configuration, name, value / harder)
+                scaled_with(configuration, name, Some(value / harder))
             )
         };
         let message = format!(
@@ -73,7 +73,8 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
     if steps > MOST_STEPS_PER_PERIOD && overlap < SMALL_OVERLAP && !is_led {
         let of_load = value * load(&hardest) / force_at(&hardest, SMALL_OVERLAP);
         let softer = three_digits(value_for(SMALL_OVERLAP).max(of_load), f64::ceil);
-        if softer >= value {
+        // What parts grains that cohere takes more energy where they are softer: they would stick.
+        if softer >= value || configuration.contact.cohesion.is_some() {
             return None;
         }
         // The unit of time grows as elasticity^(-1/2).
@@ -88,7 +89,7 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
             significant(frequency, 3),
             100.0 * SMALL_OVERLAP,
             significant(fewer, 2),
-            scaled_with(configuration, name, value / softer)
+            scaled_with(configuration, name, Some(value / softer))
         );
         return Some(Warning { key, message });
     }
@@ -140,9 +141,14 @@ impl Material {
     }
 }
 
-/// Says that forces in our units become another multiple of the elasticity when it changes; nothing without such forces.
-fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String {
-    let mut keys = Vec::new();
+/// Says that forces and rates in our units are others in SI when the elasticity changes; nothing without such. `factor` is the
+/// elasticity over the new one, where that is known.
+pub(super) fn scaled_with(
+    configuration: &Configuration,
+    name: &str,
+    factor: Option<f64>,
+) -> String {
+    let (mut keys, mut rates) = (Vec::new(), Vec::new());
     if configuration.body != Body::default() {
         keys.push("body.gravity, unless units.acceleration gives it");
     }
@@ -156,13 +162,32 @@ fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String
             "the tethers of wall.keep",
         ]);
     }
-    if keys.is_empty() {
+    match configuration.contact.cohesion.map(|it| it.surface_energy) {
+        Some(energy) if energy > 0.0 => keys.push("contact.surface_energy"),
+        Some(_) => keys.push("contact.cohesion_force"),
+        None => {}
+    }
+    if let Some(inlet) = configuration.inlet {
+        rates.push("inlet.velocity");
+        rates.extend(inlet.feed_rate.map(|_| "inlet.feed_rate"));
+    }
+    let strain_rate = ScheduledParameter::StrainRate;
+    if configuration.drive.schedule(strain_rate).is_some() {
+        rates.push("strain rates of drive.schedule");
+    }
+    let by = |keys: &[&str], power: f64, of: &str| {
+        let factor = factor.map(|factor| significant(libm::pow(factor, power), 4));
+        let factor = factor.unwrap_or_else(|| format!("{of}the old value over the new"));
+        (!keys.is_empty()).then(|| format!("{} by {factor}", keys.join(", ")))
+    };
+    let parts = [by(&keys, 1.0, ""), by(&rates, 0.5, "the root of ")];
+    let parts: Vec<String> = parts.into_iter().flatten().collect();
+    if parts.is_empty() {
         return String::new();
     }
-    let keys = keys.join(", ");
     format!(
-        ". With that {name} multiply what is in units of it ({keys}) by {}, so that it stays the same in SI",
-        significant(factor, 4)
+        ". With that {name} multiply {}, so that they stay the same in SI",
+        parts.join(", and ")
     )
 }
 

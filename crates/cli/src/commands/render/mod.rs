@@ -8,8 +8,9 @@ use std::time;
 
 use peristalsis_formats::atomic::{self, Pending};
 use peristalsis_run::{
-    Drawing, FilmFormat, FilmPlan, Frame, FrameSource, Look, Picture, PictureScene, Run, RunError,
-    RunFolder, Span, TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, Window, space_time,
+    Drawing, Field, FilmFormat, FilmPlan, Frame, FrameSource, Look, Picture, PictureScene, Run,
+    RunError, RunFolder, Span, TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, Window,
+    space_time,
 };
 use serde_json::json;
 
@@ -257,7 +258,13 @@ fn start_of(run: &Run) -> Result<Run, Failure> {
 /// The picture of the last of some frames, and its instant.
 fn draw(run: &Run, look: Look, frames: &[Frame]) -> Result<(Drawing, Instant), RunError> {
     let last = &frames[frames.len() - 1];
-    let drawing = PictureScene::new(run, look, frames)?.draw(last)?;
+    // A displacement counts from the first. Other fields of a wave that stands now are not told in the speed that it had.
+    let stands = run.simulation().wall().frequency(last.time) == 0.0;
+    let samples = match stands && look.field != Field::AxialDisplacement {
+        true => &frames[frames.len() - 1..],
+        false => frames,
+    };
+    let drawing = PictureScene::new(run, look, samples)?.draw(last)?;
     let period = run.configuration().drive.period();
     let instant = (last.time, period.map(|period| last.time / period));
     Ok((drawing, instant))
