@@ -6,8 +6,6 @@ use serde::{Deserialize, Serialize};
 use crate::load::for_each_grain_contact;
 use crate::series::{Join, Series, joined};
 
-/// Steps from one look to the next, at least: every contact has to be found again, which takes as long as some steps.
-const STEPS_BETWEEN_LOOKS: u64 = 2_000;
 /// Part of the contacts below [`ContactForce::high`].
 const PART: f64 = 0.99;
 
@@ -68,10 +66,10 @@ impl Default for ContactForces {
 }
 
 impl ContactForces {
-    /// Records the forces now, where the next record is due.
-    pub fn look(&mut self, simulation: &Simulation) {
+    /// Records the forces now, where the next record is due, `interval` steps after the last.
+    pub fn look(&mut self, simulation: &Simulation, interval: u64) {
         if simulation.step() >= self.due {
-            self.due = simulation.step() + STEPS_BETWEEN_LOOKS;
+            self.due = simulation.step() + interval;
             self.looks.push([ContactForce::of(simulation)]);
         }
     }

@@ -610,7 +610,7 @@ fn forces_at_contacts_are_the_largest_and_what_99_per_cent_stay_below() {
     // Periods of 500 steps: every fourth is looked at.
     for _ in 0..9 {
         simulation.advance(500).expect("soft pairs");
-        forces.look(&simulation);
+        forces.look(&simulation, 2000);
     }
     let times: Vec<f64> = forces.late(0.0).iter().map(|look| look.time).collect();
     assert_eq!(times.len(), 3);

@@ -82,7 +82,11 @@ impl Recorder {
             detector: detector_at(configuration.observe.transition_threshold),
             ladder: THRESHOLDS.into_iter().filter_map(detector_at).collect(),
             profile: WaveFrameProfile::new(bins, samples_per_period),
-            wall_interval: wall_interval(configuration.run.steps_per_sample, samples_per_period),
+            wall_interval: samples_between(
+                STEPS_BETWEEN_LOOKS,
+                configuration.run.steps_per_sample,
+                samples_per_period,
+            ),
             waves: WaveByWave::new(simulation, samples_per_period),
             wall_faults: Vec::new(),
         }
@@ -97,7 +101,7 @@ impl Recorder {
         let waves = simulation.wall().waves() as usize;
         let bins = configuration.observe.profile_bins as usize;
         self.samples_per_period == samples_per_period
-            && self.wall_interval == wall_interval(each, samples_per_period)
+            && self.wall_interval == samples_between(STEPS_BETWEEN_LOOKS, each, samples_per_period)
             // A run that diverged has taken no sample since, however often it was tried again.
             && samples <= simulation.step() / each
             && self.averages.count() == samples / samples_per_period
@@ -113,7 +117,10 @@ impl Recorder {
 
     /// Takes a sample of the simulation.
     pub(crate) fn record(&mut self, simulation: &Simulation) {
-        self.contact_forces.look(simulation);
+        // Samples are each of so many steps, and this is the next.
+        let each = simulation.step() / (self.samples.count() + 1);
+        let apart = samples_between(STEPS_BETWEEN_CONTACTS, each, self.samples_per_period);
+        self.contact_forces.look(simulation, apart * each);
         let view = View::of(simulation);
         let before = self.observer.end_interval(&view);
         let ends_period = (self.samples.count() + 1).is_multiple_of(self.samples_per_period);
@@ -285,11 +292,13 @@ fn direction(start: f64, threshold: f64) -> Direction {
 
 /// Steps from one look at the forces of the wall to the next, at least: a look takes as long as some steps.
 const STEPS_BETWEEN_LOOKS: u64 = 100;
+/// The same for the forces of all contacts.
+const STEPS_BETWEEN_CONTACTS: u64 = 2_000;
 
-/// Samples from one look at the forces of the wall to the next: prime to those of a period, so that all phases between
+/// Samples from one look at forces to the next, at least so many steps: prime to those of a period, so that all phases between
 /// wave and lattice have their turn.
-fn wall_interval(steps_per_sample: u64, samples_per_period: u64) -> u64 {
-    let least = STEPS_BETWEEN_LOOKS.div_ceil(steps_per_sample.max(1));
+fn samples_between(steps: u64, steps_per_sample: u64, samples_per_period: u64) -> u64 {
+    let least = steps.div_ceil(steps_per_sample.max(1));
     (least..)
         .find(|&interval| greatest_common_divisor(interval, samples_per_period) == 1)
         .unwrap_or(least)
@@ -307,11 +316,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn looks_at_the_wall_are_rare_and_meet_every_phase() {
-        assert_eq!(wall_interval(20, 20), 7);
-        assert_eq!(wall_interval(10, 20), 11);
-        assert_eq!(wall_interval(250, 20), 1);
-        assert_eq!(wall_interval(100, 1), 1);
-        assert_eq!(wall_interval(1, 30), 101);
+    fn looks_at_forces_are_rare_and_meet_every_phase() {
+        // A physicist: 100 samples of 20 steps were five periods, and all contacts were seen at one phase.
+        assert_eq!(samples_between(STEPS_BETWEEN_CONTACTS, 20, 20), 101);
+        assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 20, 20), 7);
+        assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 10, 20), 11);
+        assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 250, 20), 1);
+        assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 100, 1), 1);
+        assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 1, 30), 101);
     }
 }

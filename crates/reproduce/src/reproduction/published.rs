@@ -56,8 +56,8 @@ pub fn published_in_words(all: &[PublishedRows], drawn: Option<&Drawn>) -> Optio
     let but = match older {
         0 => " to the bit".to_owned(),
         several => format!(
-            " to the bit, in {several} of them but for the last digits of sums that an older program added up in another \
-             order ({})",
+            " to the bit, in {several} of them but for what an older program read off otherwise: last digits of sums ({}), \
+             and forces of contacts, which it looked at in few phases of the wave",
             RESUMMED.join(", ")
         ),
     };

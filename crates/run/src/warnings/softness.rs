@@ -255,9 +255,35 @@ mod tests {
         let softer: f64 = number_after(&said, "overlaps stay small: ")
             .parse()
             .unwrap();
-        let factor: f64 = number_after(&said, "wall.keep) by ").parse().unwrap();
+        let factor: f64 = number_after(&said, "wall.keep by ").parse().unwrap();
         assert!((factor * softer / 6e10 - 1.0).abs() < 1e-3, "{said}");
         assert!(said.contains("drive.force_amplitude"), "{said}");
+    }
+
+    /// A newcomer with a powder: who followed the advice had grains that stuck, and a hundredth of the flow.
+    #[test]
+    fn grains_that_cohere_are_not_advised_to_be_softer() {
+        let hard = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=1e9 units.wave_frequency=1";
+        assert!(said("frictionless", hard).is_some());
+        assert_eq!(
+            said(
+                "frictionless",
+                &format!("{hard} contact.cohesion_force=1e-9")
+            ),
+            None
+        );
+    }
+
+    #[test]
+    fn what_is_per_time_changes_with_the_root() {
+        let open = "tube.ends=open inlet.feed_rate=0.1 inlet.waiting=5";
+        let open = scaled_with(
+            &configuration("frictionless", open),
+            "stiffness",
+            Some(0.25),
+        );
+        let expected = ". With that stiffness multiply inlet.velocity, inlet.feed_rate by 0.5000, so that they stay the same in SI";
+        assert_eq!(open, expected);
     }
 
     #[test]
