@@ -16,7 +16,8 @@ pub struct PublishedRows {
     pub rows: usize,
     /// Those whose runs were computed again, drawn at random or for what a row does not hold.
     pub checked: usize,
-    /// Of these, those that are the same but for [`RESUMMED`] sums, which their program, an older one, added up in another order.
+    /// Of these, those that are the same but for what their program, an older one, read off otherwise
+    /// ([`RowDifference::is_known`]).
     pub older: usize,
     /// Of these, those that did not come out the same.
     pub differing: Vec<DifferingRow>,
