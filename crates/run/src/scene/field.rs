@@ -71,12 +71,7 @@ impl Coloured {
             ));
         }
         let wall = run.simulation().wall();
-        // The one instant of a picture, or the first of a film.
-        let instant = match samples {
-            [one] => one.time,
-            _ => first.time,
-        };
-        let is_moving = wall.frequency(instant) != 0.0;
+        let is_moving = wall.frequency(first.time) != 0.0;
         let units = units(run.configuration());
         let per = |symbol: &str| {
             if is_moving {
