@@ -332,6 +332,23 @@ mod tests {
         Late::in_blocks(late, 1)
     }
 
+    /// A newcomer: an open tube of three periods was told over three quarters of a stroke, a third less than it discharges.
+    #[test]
+    fn late_means_of_a_pulsing_tube_are_over_a_whole_period_at_least() {
+        let segments = "grains.number=5 tube.waves=1 drive.waveform=segments drive.width=2";
+        for (periods, expected) in [(2.0, 20), (7.0, 20), (8.0, 40), (0.5, 3)] {
+            let length = format!("run.periods={periods}");
+            let settings: Vec<&str> = segments.split(' ').chain([&*length]).collect();
+            let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+            let mut run = crate::Run::new(configuration.clone()).unwrap();
+            while !run.is_complete() {
+                run.advance().unwrap();
+            }
+            let late = Late::of(&configuration, run.recorder(), run.late_fraction());
+            assert_eq!(late.len(), expected, "{periods}");
+        }
+    }
+
     /// Three samples a period, of which the second has a flow of 6 more; mean flows of 12 and 14 in turn.
     #[test]
     fn the_pulse_of_a_wave_is_no_noise() {

@@ -114,3 +114,26 @@ fn in_words(working: &Working) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cluster's user: the time left grew while a dead worker's run was waited for.
+    #[test]
+    fn what_others_hold_is_waited_for_and_has_no_time_left() {
+        let mut board = Board {
+            total: 6,
+            done: 5,
+            waits_for: 1,
+            ..Board::default()
+        };
+        let words = |board: &Board| overall(board, "", Some(Duration::from_secs(42)));
+        assert_eq!(
+            words(&board),
+            "5 of 6 runs done, waits for 1 run that other programs hold"
+        );
+        board.waits_for = 0;
+        assert_eq!(words(&board), "5 of 6 runs done, 42 s left");
+    }
+}

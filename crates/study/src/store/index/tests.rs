@@ -212,3 +212,16 @@ fn values_that_cannot_be_make_the_index_a_new_one() {
         assert!(aside.is_file(), "{damage}");
     }
 }
+
+/// A cluster's user: a store far down was called one that this user may not write to.
+#[test]
+fn a_path_that_is_too_long_for_the_index_is_called_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let deep = folder.path().join(["x".repeat(100).as_str(); 5].join("/"));
+    std::fs::create_dir_all(&deep).unwrap();
+    let Err(StudyError::Io { source, .. }) = Index::open(&deep.join("index.sqlite")) else {
+        panic!("it was opened, or refused for something else");
+    };
+    assert_eq!(source.kind(), std::io::ErrorKind::InvalidFilename);
+    assert!(source.to_string().contains("500 at most"), "{source}");
+}
