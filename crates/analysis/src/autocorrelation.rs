@@ -17,12 +17,13 @@ const LARGEST_WINDOW: usize = 10;
 pub struct AutocorrelationTime {
     /// tau = 1/2 + sum of the normalised autocorrelations, in samples; 1/2 for uncorrelated samples.
     pub time: f64,
-    /// Its standard error, 2 tau sqrt((W + 1/2 - tau)/n); for exponential correlations some 15 per cent too
+    /// Its standard error, 2 |tau| sqrt((W + 1/2 - tau)/n); for exponential correlations some 15 per cent too
     /// large, and meaningless unless converged.
     pub error: f64,
     /// Largest lag W of the sum, in samples.
     pub window: usize,
-    /// Whether the window closed by itself; if not, `time` is a lower bound, and the series is too short.
+    /// Whether the window closed by itself; if not, `time` is a lower bound, and the series is too short. Of a series shorter
+    /// than 100 tau the time comes out too small even so.
     pub converged: bool,
 }
 
@@ -30,9 +31,9 @@ pub struct AutocorrelationTime {
 ///
 /// `tau(W) = 1/2 + sum_(t=1)^W rho(t),   rho(t) = sum_i (x_i - <x>)(x_(i+t) - <x>)/sum_i (x_i - <x>)^2`
 ///
-/// W is the least lag with W >= 5 tau(W), n/10 at most. The variance of the mean is 2 tau/n times that of one sample.
-/// Sources: Madras & Sokal, J. Stat. Phys. 50, 109 (1988), appendix C; the error: Wolff, Comput. Phys. Commun. 156, 143
-/// (2004).
+/// W is the least lag with W >= 5 tau(W) > 0, n/10 at most; the time is tau(W) (1 + (2 W + 1)/n), as the mean of the series is
+/// not known better. The variance of the mean is 2 tau/n times that of one sample. Sources: Madras & Sokal, J. Stat. Phys.
+/// 50, 109 (1988), appendix C; the error and the factor: Wolff, Comput. Phys. Commun. 156, 143 (2004).
 ///
 /// # Errors
 /// [`Error::TooFew`] below 16 samples, [`Error::NonFinite`].
@@ -47,11 +48,15 @@ pub fn autocorrelation_time(series: &[f64]) -> Result<AutocorrelationTime, Error
         window += 1;
         let pairs = deviations.iter().zip(&deviations[window..]);
         time += pairs.map(|(now, later)| now * later).sum::<f64>() / variance;
-        converged = window as f64 >= WINDOW * time;
+        converged = time > 0.0 && window as f64 >= WINDOW * time;
+    }
+    let samples = series.len() as f64;
+    if window > 0 {
+        time *= 1.0 + (2 * window + 1) as f64 / samples;
     }
     Ok(AutocorrelationTime {
         time,
-        error: 2.0 * time * ((window as f64 + 0.5 - time).max(0.0) / series.len() as f64).sqrt(),
+        error: 2.0 * time.abs() * ((window as f64 + 0.5 - time).max(0.0) / samples).sqrt(),
         window,
         converged,
     })
@@ -102,8 +107,23 @@ mod tests {
         let found = autocorrelation_time(&drift).unwrap();
         assert!(!found.converged);
         assert_eq!(found.window, 40);
-        let constant = autocorrelation_time(&[0.5; 40]).unwrap();
-        assert_eq!((constant.time, constant.converged), (0.5, true));
+        // 0.1 is no sum of powers of 2.
+        for value in [0.5, 0.1] {
+            let constant = autocorrelation_time(&[value; 100]).unwrap();
+            assert_eq!((constant.time, constant.converged), (0.5, true));
+        }
+    }
+
+    #[test]
+    fn a_series_that_swings_has_a_positive_time() {
+        for memory in [-0.6, -0.9] {
+            let expected = 0.5 * (1.0 + memory) / (1.0 - memory);
+            for seed in 0..200 {
+                let found = autocorrelation_time(&autoregressive(memory, seed, 200)).unwrap();
+                assert!(found.time > 0.0 && found.error > 0.0, "{found:?}");
+                assert!(found.converged && found.time < expected + 0.5, "{found:?}");
+            }
+        }
     }
 
     #[test]

@@ -19,9 +19,10 @@ pub(crate) fn by_width<T: Copy>(width: &[f64], rows: &[T]) -> (Vec<f64>, Vec<Vec
     (places, rows)
 }
 
-/// Arithmetic mean, summed in order; the series must not be empty.
+/// Arithmetic mean, summed in order as deviations from the first value, so that equal values have exactly theirs; NaN of none.
 pub(crate) fn mean_of(series: &[f64]) -> f64 {
-    series.iter().sum::<f64>() / series.len() as f64
+    let first = series.first().copied().unwrap_or(f64::NAN);
+    first + series.iter().map(|x| x - first).sum::<f64>() / series.len() as f64
 }
 
 /// Mean, and the sum of the squared deviations from it.

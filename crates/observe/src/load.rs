@@ -2,11 +2,14 @@
 
 use glam::{DMat3, DVec3};
 use peristalsis_engine::{Bodies, Simulation, Touching};
+use peristalsis_physics::wall::{Contraction, RadiusWave};
 
 use crate::shape::TubeShape;
 
 /// Places along the tube at which its cross-section is taken, a wavelength, at least.
 const PLACES_A_WAVE: f64 = 256.0;
+/// Instants of a period that a mean over it is from.
+const PHASES: u32 = 128;
 
 /// A contact of a grain, with where it is and the lever arms of its spheres.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -159,22 +162,38 @@ fn dyad(a: DVec3, b: DVec3) -> DMat3 {
 /// Volume that the wall's spheres leave clear, the integral of pi (R - d_w/2)^2 along the tube, between its ends where it is
 /// open; R to their centres and d_w their diameter \[d^3\].
 pub fn clear_volume(simulation: &Simulation) -> f64 {
-    clear_volume_along(simulation, simulation.length())
+    clear_volume_along(simulation, &TubeShape::of(simulation), simulation.length())
 }
 
 /// Clear volume of a wavelength, the mean over those of the wall: the ends of an open tube do not count \[d^3\].
+///
+/// That of segments, which close in turn, is the mean over a period.
 pub fn clear_volume_of_wave(simulation: &Simulation) -> f64 {
     let wall = simulation.wall();
-    clear_volume_along(simulation, wall.length()) / f64::from(wall.waves())
+    let of = |shape: &TubeShape| clear_volume_along(simulation, shape, wall.length());
+    let whole = match TubeShape::of(simulation) {
+        TubeShape::Wave(
+            wave @ RadiusWave {
+                contraction: Contraction::Segments(_),
+                ..
+            },
+            cycles,
+        ) => {
+            let at =
+                |phase: u32| TubeShape::Wave(wave, cycles + f64::from(phase) / f64::from(PHASES));
+            (0..PHASES).map(|phase| of(&at(phase))).sum::<f64>() / f64::from(PHASES)
+        }
+        shape => of(&shape),
+    };
+    whole / f64::from(wall.waves())
 }
 
 /// Clear volume along so much of the tube from where z is 0, of an open tube from its inlet \[d^3\].
-fn clear_volume_along(simulation: &Simulation, length: f64) -> f64 {
+fn clear_volume_along(simulation: &Simulation, shape: &TubeShape, length: f64) -> f64 {
     let wall = simulation.wall();
-    let shape = TubeShape::of(simulation);
     let half = 0.5 * wall.sphere_diameter();
     let least = PLACES_A_WAVE * f64::from(wall.waves());
-    let places = match &shape {
+    let places = match shape {
         // As many in each slice.
         TubeShape::Slices(slices, _) => (least / slices.len() as f64).ceil() * slices.len() as f64,
         TubeShape::Wave(..) => least.max(1.0),

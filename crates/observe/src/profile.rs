@@ -1,6 +1,7 @@
 //! Profiles in the wave frame: density, axial velocity, temperature and the forces of the wall against
 //! (z - c t)/lambda.
 
+mod blocks;
 mod part;
 
 use core::f64::consts::TAU;
@@ -11,11 +12,9 @@ use peristalsis_physics::wall::{Contraction, RadiusWave, Waveform};
 
 pub use part::{PartOfWave, WavePart};
 
+use self::blocks::Blocks;
 use crate::shape::{Slice, TubeShape};
 use crate::view::{View, floor};
-
-/// Blocks kept at most; when there are more, neighbours are merged.
-const MOST_BLOCKS: usize = 64;
 
 /// Sums over the grains seen in one bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -138,11 +137,7 @@ impl Sums {
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WaveFrameProfile {
     bins: usize,
-    /// Samples in a full block.
-    block: u64,
-    /// Samples in the last block.
-    in_last: u64,
-    blocks: Vec<Vec<Sums>>,
+    blocks: Blocks,
     #[serde(skip)]
     outline: Outline,
 }
@@ -214,40 +209,24 @@ impl ProfileBin {
 }
 
 impl WaveFrameProfile {
-    /// An empty profile with `bins` bins; a block begins with `samples_per_block` samples, a wave period for instance.
-    pub fn new(bins: usize, samples_per_block: u64) -> Self {
+    /// An empty profile with `bins` bins, of so many samples a period.
+    pub fn new(bins: usize, samples_per_period: u64) -> Self {
         Self {
             bins: bins.max(1),
-            block: samples_per_block.max(1),
-            in_last: 0,
-            blocks: Vec::new(),
+            blocks: Blocks::new(samples_per_period),
             outline: Outline::default(),
         }
     }
 
-    /// Whether it is a profile of `bins` bins and `samples_per_block` samples in a block.
-    pub fn fits(&self, bins: usize, samples_per_block: u64) -> bool {
-        let first = samples_per_block.max(1);
-        // Blocks are doubled when there are many of them.
-        let doubled = self.block / first;
-        self.bins == bins.max(1)
-            && self.block.is_multiple_of(first)
-            && doubled.is_power_of_two()
-            && self.blocks.len() <= MOST_BLOCKS
-            && self.in_last <= self.block
-            && self.blocks.iter().all(|block| block.len() == self.bins)
+    /// Whether it can be a profile of `bins` bins and so many samples a period.
+    pub fn fits(&self, bins: usize, samples_per_period: u64) -> bool {
+        self.bins == bins.max(1) && self.blocks.fit(self.bins, samples_per_period)
     }
 
     /// Adds the grains inside the tube, and its shape.
     pub fn add(&mut self, view: &View<'_>) {
-        if self.blocks.is_empty() || self.in_last == self.block {
-            self.begin_block();
-        }
-        self.in_last += 1;
         let bins = self.bins;
-        let Some(last) = self.blocks.last_mut() else {
-            return;
-        };
+        let last = self.blocks.begin_sample(bins);
         let wall = view.simulation.wall();
         let (heading, cycles) = (wall.heading(), wall.cycles());
         let (waves, wavelength) = (wall.waves(), wall.wavelength());
@@ -297,7 +276,7 @@ impl WaveFrameProfile {
     /// Every contact has to be found again: do it at some samples only.
     pub fn add_wall_forces(&mut self, simulation: &Simulation) {
         let bins = self.bins;
-        let Some(last) = self.blocks.last_mut() else {
+        let Some(last) = self.blocks.last() else {
             return;
         };
         let wall = simulation.wall();
@@ -347,30 +326,12 @@ impl WaveFrameProfile {
         }
     }
 
-    fn begin_block(&mut self) {
-        if self.blocks.len() == MOST_BLOCKS {
-            let merged = self.blocks.chunks(2).map(|pair| {
-                let mut sum = pair[0].clone();
-                for other in &pair[1..] {
-                    for (into, from) in sum.iter_mut().zip(other) {
-                        into.add(from);
-                    }
-                }
-                sum
-            });
-            self.blocks = merged.collect();
-            self.block *= 2;
-        }
-        self.blocks.push(vec![Sums::default(); self.bins]);
-        self.in_last = 0;
-    }
-
-    /// The profile over the last part of what was added, at least one block; `wavelength` in d, `period` in samples.
+    /// The profile over the last part of what was added, of whole periods, at least one; `wavelength` in d.
     ///
-    /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one. What was added since
-    /// the last whole period counts in the means, not in the errors.
-    pub fn late(&self, fraction: f64, wavelength: f64, period: u64) -> Vec<ProfileBin> {
-        let (groups, whole) = self.late_groups(fraction, period);
+    /// Errors are standard errors from up to ten groups of equally many periods, NaN where there is only one. What was added
+    /// since the last whole period counts in the means, not in the errors.
+    pub fn late(&self, fraction: f64, wavelength: f64) -> Vec<ProfileBin> {
+        let (groups, whole) = self.blocks.late(fraction);
         let totals: Vec<Sums> = (0..self.bins)
             .map(|bin| total(groups.iter().map(|group| &group[bin])))
             .collect();
@@ -411,29 +372,6 @@ impl WaveFrameProfile {
                 }
             })
             .collect()
-    }
-
-    /// The last part of the blocks in up to ten equal groups, and how many these are; where the last block ends within a
-    /// period of so many samples, it follows them as a group of its own.
-    fn late_groups(&self, fraction: f64, period: u64) -> (Vec<Vec<Sums>>, usize) {
-        let is_cut = !self.in_last.is_multiple_of(period);
-        let blocks = self.blocks.len() - usize::from(is_cut);
-        let taken = if is_cut {
-            // No less than the late part, with the block that is cut.
-            let cut = self.in_last as f64 / self.block as f64;
-            ((blocks as f64 + cut) * fraction - cut).ceil()
-        } else {
-            (blocks as f64 * fraction).round()
-        };
-        let taken = (taken as usize).clamp(1.min(blocks), blocks);
-        let (late, cut) = self.blocks[blocks - taken..].split_at(taken);
-        let of_group = |group: &[Vec<Sums>]| {
-            let bin = |bin: usize| total(group.iter().map(|block| &block[bin]));
-            (0..self.bins).map(bin).collect()
-        };
-        let whole = late.chunks(late.len().div_ceil(10).max(1));
-        let number = whole.len();
-        (whole.chain(cut.chunks(1)).map(of_group).collect(), number)
     }
 }
 

@@ -166,9 +166,9 @@ fn the_profile_of_an_open_tube_is_that_between_its_ends() {
         let closed = Simulation::new(bodies, wall(heading, 0.5), parameters());
         let simulation = closed.open(shut(heading), &[]).unwrap();
         assert_eq!(simulation.length(), 16.0);
-        let mut profile = WaveFrameProfile::new(20, 2);
+        let mut profile = WaveFrameProfile::new(20, 1);
         profile.add(&View::of(&simulation));
-        let bins = profile.late(1.0, 10.0, 1);
+        let bins = profile.late(1.0, 10.0);
         // From 6 on in a wavelength only the first wave is in the tube. Grains: 0.2, 3.1, 8.1 and 13.1 from the inlet, or 6.9
         // and 11.9.
         let found = |from_inlet: f64| bins[(2.0 * from_inlet) as usize].density.0;
@@ -194,9 +194,9 @@ fn a_grain_beyond_an_end_is_in_no_profile() {
     // Between two looks it leaves.
     simulation.advance(19).unwrap();
     assert!(simulation.is_present(2) && simulation.bodies().position[2].z > 16.0);
-    let mut profile = WaveFrameProfile::new(20, 2);
+    let mut profile = WaveFrameProfile::new(20, 1);
     profile.add(&View::of(&simulation));
-    let bins = profile.late(1.0, 10.0, 1);
+    let bins = profile.late(1.0, 10.0);
     // The three others, each in a bin of two places or of one.
     let densities = bins.iter().map(|bin| bin.density.0).filter(|it| *it > 0.0);
     let densities: Vec<f64> = densities.collect();
@@ -211,12 +211,12 @@ fn the_profile_holds_each_grain_once_and_its_velocity_along_the_wave() {
     for heading in [1.0, -1.0] {
         let mut simulation = free_flight(heading);
         // More blocks than are kept, so that some are merged.
-        let mut profile = WaveFrameProfile::new(20, 2);
+        let mut profile = WaveFrameProfile::new(20, 1);
         for _ in 0..300 {
             simulation.advance(1).unwrap();
             profile.add(&View::of(&simulation));
         }
-        let bins = profile.late(1.0, 10.0, 1);
+        let bins = profile.late(1.0, 10.0);
         let grains: f64 = bins.iter().map(|bin| bin.density.0 * 0.5 * 2.0).sum();
         assert!((grains - 4.0).abs() < 1e-9, "{grains}");
         let momentum: f64 = bins
@@ -243,24 +243,69 @@ fn a_period_that_is_under_way_is_no_late_part_of_its_own() {
         simulation.advance(1).unwrap();
         profile.add(&View::of(&simulation));
         if sample == 79 {
-            number[0] = profile.late(0.25, 10.0, 20)[0].density.0;
+            number[0] = profile.late(0.25, 10.0)[0].density.0;
         }
         // One look at the wall a period, in its middle.
         if sample % 20 == 10 {
             profile.add_wall_forces(&simulation);
         }
     }
-    let bin = &profile.late(0.25, 10.0, 20)[0];
+    let bin = &profile.late(0.25, 10.0)[0];
     number[1] = bin.density.0;
     assert!(
         bin.wall_pressure.0.is_finite() && bin.wall_pressure.1.is_nan(),
         "{bin:?}"
     );
     assert_eq!(number, [0.2; 2]);
-    let errors = profile.late(0.5, 10.0, 20)[0].wall_pressure;
+    let errors = profile.late(0.5, 10.0)[0].wall_pressure;
     assert_eq!(errors, (0.0, 0.0), "of the two whole periods");
-    let whole = profile.late_part(0.25, WavePart::Whole, 20);
+    let whole = profile.late_part(0.25, WavePart::Whole);
     assert!(whole.normal_force.0.is_finite(), "{whole:?}");
+}
+
+/// A checker: of 257 periods the last 10 were taken as the last one, of 4,224 the last 30 as 128.
+#[test]
+fn the_late_part_of_a_long_run_is_as_long_as_it_is_asked_for() {
+    let early = free_flight(1.0);
+    let mut fewer = early.bodies().clone();
+    let grains = fewer.grains;
+    fewer.velocity[..grains].fill(DVec3::new(0.0, 0.0, 2.0));
+    let late = Simulation::new(fewer, wall(1.0, 0.5), parameters());
+    for (periods, number) in [
+        (64, 10),
+        (65, 10),
+        (129, 10),
+        (257, 10),
+        (513, 1),
+        (1000, 60),
+        (4224, 30),
+        (20_000, 62),
+    ] {
+        let mut profile = WaveFrameProfile::new(1, 1);
+        for _ in 0..periods - number {
+            profile.add(&View::of(&early));
+        }
+        let before = profile.late(1.0, 10.0)[0].axial_velocity.0;
+        for _ in 0..number {
+            profile.add(&View::of(&late));
+        }
+        let of = |wanted: u32| {
+            let fraction = f64::from(wanted) / f64::from(periods);
+            profile.late(fraction, 10.0)[0].axial_velocity
+        };
+        let (found, error) = of(number);
+        assert!((found - 2.0).abs() < 1e-12 && before < 1.9, "{periods}");
+        assert_eq!(error.is_nan(), number == 1, "{periods}");
+        // Of a long late part the oldest block may be left out.
+        let wanted = periods / 2;
+        let part = f64::from(number) / f64::from(wanted);
+        let expected = part * 2.0 + (1.0 - part) * before;
+        assert!(
+            (of(wanted).0 - expected).abs() < 0.04 * part.min(1.0 - part),
+            "{periods}"
+        );
+        assert!(profile.fits(1, 1) && !profile.fits(1, 2) && !profile.fits(2, 1));
+    }
 }
 
 #[test]
@@ -328,13 +373,13 @@ fn what_the_wall_does_is_what_the_grains_feel() {
         let mut profile = WaveFrameProfile::new(10, 1);
         profile.add(&View::of(&simulation));
         profile.add_wall_forces(&simulation);
-        let force = profile.late_part(1.0, WavePart::Whole, 1);
+        let force = profile.late_part(1.0, WavePart::Whole);
         assert!(
             (force.normal_force.0 - 0.5 * axial).abs() < 1e-9,
             "{force:?} {axial}"
         );
         assert_eq!(force.tangential_force.0, 0.0);
-        let bins = profile.late(1.0, 10.0, 1);
+        let bins = profile.late(1.0, 10.0);
         // R = 6 everywhere: a bin has the area 2 pi 6 in each of the two waves.
         let pressure: f64 = bins.iter().map(|bin| bin.wall_pressure.0).sum();
         let expected = 0.5 * outward / (core::f64::consts::TAU * 6.0);
@@ -368,13 +413,13 @@ fn the_parts_of_a_wave_have_their_own_forces() {
         profile.add(&View::of(&simulation));
         profile.add_wall_forces(&simulation);
         for part in [WavePart::Narrow, WavePart::Front] {
-            let found = profile.late_part(1.0, part, 1);
+            let found = profile.late_part(1.0, part);
             assert!((found.normal_force.0 - axial(0)).abs() < 1e-9, "{found:?}");
             assert_eq!(found.tangential_force.0, 0.0);
             // A prescribed wall moves in and out only.
             assert_eq!(found.wall_velocity.0, 0.0);
         }
-        let all = profile.late_part(1.0, WavePart::Whole, 1).normal_force.0;
+        let all = profile.late_part(1.0, WavePart::Whole).normal_force.0;
         assert!((all - axial(0) - axial(1)).abs() < 1e-9);
     }
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::check::{Check, Convergence};
 pub use crate::contents::{Quantity, ReportFigure, ReportTable};
+use crate::exhibit::listed;
 
 /// The verdict on a claim or a textbook case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -149,17 +150,53 @@ impl Statistics {
     }
 }
 
+/// The verdict on a wall without its runs at one strain rate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Without {
+    /// The strain rate that is left out.
+    pub strain_rate: f64,
+    /// What the others say.
+    pub verdict: Verdict,
+}
+
 /// What one wall says of a claim.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WallVerdict {
     /// Name of the wall: spheres a ring, rings a wave, and how they stand.
     pub wall: String,
     /// The verdict there: reproduced, differs or open.
     pub verdict: Verdict,
+    /// The strain rates without any one of which the verdict would be another; none where no single one decides.
+    pub hangs_on: Vec<Without>,
     /// The number that decides, with its error, in a few words of markup.
     pub number: String,
     /// Why this verdict, in markup.
     pub why: String,
+}
+
+impl WallVerdict {
+    /// The word for the verdict, with a dagger where it would be open without one of the strain rates, and with a double one
+    /// where it would be the opposite.
+    pub(crate) fn verdict_with_mark(&self) -> String {
+        let is_opposite = |one: &Without| one.verdict != Verdict::Open;
+        let mark = match self.hangs_on.as_slice() {
+            [] => "",
+            those if those.iter().any(is_opposite) => " ‡",
+            _ => " †",
+        };
+        format!("{}{mark}", self.verdict.name())
+    }
+
+    /// "0.2 (differs); 0.1, 0.14 (open)": the strain rates that it hangs on, and what it would be without one of them.
+    pub(crate) fn hangs_on_in_words(&self) -> String {
+        let words = |verdict: Verdict| {
+            let those = self.hangs_on.iter().filter(|one| one.verdict == verdict);
+            let rates = listed(those.map(|one| one.strain_rate));
+            (!rates.is_empty()).then(|| format!("{rates} ({})", verdict.name()))
+        };
+        let words = Verdict::ALL.into_iter().filter_map(words);
+        words.collect::<Vec<_>>().join("; ")
+    }
 }
 
 /// The finding on a claim, or on a textbook case.

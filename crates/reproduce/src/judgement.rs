@@ -7,7 +7,7 @@
 use peristalsis_analysis::Uncertain;
 
 use crate::exhibit::listed;
-use crate::finding::{Statistics, Verdict, WallVerdict};
+use crate::finding::{Statistics, Verdict, WallVerdict, Without};
 use crate::thresholds::{LEAST_RATES, LONG, MOST_RATES};
 
 /// Whether the source's value lies in the 95 per cent interval of ours; `None` where that interval is not known, or so
@@ -101,6 +101,8 @@ pub(crate) struct Part {
     pub(crate) wall: String,
     /// Whether the claim holds there; `None` where the errors are too large to say.
     pub(crate) holds: Option<bool>,
+    /// Strain rates without which it would be another, with what it would be.
+    pub(crate) hangs_on: Vec<(f64, Option<bool>)>,
     /// How much is behind it.
     pub(crate) statistics: Statistics,
     /// The number that decides, with its error, in a few words.
@@ -126,6 +128,12 @@ impl Judgement {
         let on_wall = |part: Part| {
             let is_enough = part.statistics.suffice(needed);
             let verdict = Verdict::of(part.holds.filter(|_| is_enough));
+            let hangs_on = part.hangs_on.into_iter().filter(|_| is_enough);
+            let hangs_on = hangs_on.map(|(strain_rate, holds)| Without {
+                strain_rate,
+                verdict: Verdict::of(holds),
+            });
+            let hangs_on: Vec<Without> = hangs_on.collect();
             let why = match is_enough {
                 true => part.why,
                 false => format!("too few runs or widths for a verdict; {}", part.why),
@@ -134,6 +142,7 @@ impl Judgement {
             WallVerdict {
                 wall,
                 verdict,
+                hangs_on,
                 number,
                 why,
             }
@@ -190,6 +199,7 @@ mod tests {
         Part {
             wall: wall.to_owned(),
             holds,
+            hangs_on: Vec::new(),
             statistics: Statistics::of(4, 8, replicates, 320),
             number: String::new(),
             why: String::new(),
@@ -231,6 +241,28 @@ mod tests {
             let found = Judgement::of(parts, &Statistics::FOR_A_VERDICT);
             assert_eq!((found.verdict, &*found.headline()), (verdict, headline));
         }
+    }
+
+    #[test]
+    fn what_a_verdict_hangs_on_is_said() {
+        let found = |hangs_on: &[(f64, Option<bool>)], replicates| {
+            let part = Part {
+                hangs_on: hangs_on.to_vec(),
+                ..part("a", Some(true), replicates)
+            };
+            let mut found = Judgement::of(vec![part], &Statistics::FOR_A_VERDICT);
+            let wall = found.walls.remove(0);
+            (wall.verdict_with_mark(), wall.hangs_on_in_words())
+        };
+        let words = |verdict: &str, hangs_on: &str| (verdict.to_owned(), hangs_on.to_owned());
+        assert_eq!(found(&[], 10), words("reproduced", ""));
+        let open = [(0.1, None), (0.2, None)];
+        assert_eq!(found(&open, 10), words("reproduced †", "0.1, 0.2 (open)"));
+        let opposite = [(0.1, None), (0.2, Some(false))];
+        let both = words("reproduced ‡", "0.2 (differs); 0.1 (open)");
+        assert_eq!(found(&opposite, 10), both);
+        // With too few runs there is no verdict that could hang on anything.
+        assert_eq!(found(&opposite, 9), words("open", ""));
     }
 
     #[test]

@@ -40,7 +40,9 @@ pub use claims::CLAIMS;
 pub use error::ReproduceError;
 pub use evidence::{Evidence, StudyResults};
 pub use examination::Examination;
-pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict, WallVerdict};
+pub use finding::{
+    Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict, WallVerdict, Without,
+};
 pub use prose::Prose;
 pub use reproduction::{
     DifferingRow, Drawn, Event, Extent, Import, ImportedRuns, Outcome, PublishedRows, Reproduction,

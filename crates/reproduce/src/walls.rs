@@ -1,6 +1,7 @@
 //! The walls that are examined, and what the studies of each show.
 
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
 use crate::branch::{Branch, Branches, Control, leak};
 use crate::critical::{Thresholds, crossing};
@@ -180,7 +181,7 @@ pub(crate) struct OnWall<T> {
     /// Name of the wall for readers.
     pub(crate) name: String,
     /// By ascending strain rate.
-    pub(crate) all: Vec<Shown<T>>,
+    pub(crate) all: Vec<Rc<Shown<T>>>,
     /// Longest time that a run was given, in periods.
     pub(crate) periods: f64,
 }
@@ -193,13 +194,13 @@ impl<'a, T: AtRate<'a>> OnWall<T> {
             let runs = Runs::all(wall, evidence, T::ALSO)?;
             let periods = longest(runs.iter().flat_map(T::rows));
             let shown = |runs: &Runs<'a>| {
-                Some(Shown {
+                Some(Rc::new(Shown {
                     strain_rate: runs.strain_rate,
                     escaped: runs.escaped,
                     found: T::of(runs)?,
-                })
+                }))
             };
-            let all: Vec<Shown<T>> = runs.iter().filter_map(shown).collect();
+            let all: Vec<Rc<Shown<T>>> = runs.iter().filter_map(shown).collect();
             if !all.is_empty() {
                 let name = wall.name();
                 walls.push(Self { name, all, periods });
@@ -210,7 +211,7 @@ impl<'a, T: AtRate<'a>> OnWall<T> {
 
     /// Where the tube holds its grains.
     pub(crate) fn tight(&self) -> impl Iterator<Item = &Shown<T>> {
-        self.all.iter().filter(|one| one.is_tight())
+        self.all.iter().map(Rc::as_ref).filter(|one| one.is_tight())
     }
 
     /// At which of the strain rates that count a claim holds.
@@ -223,11 +224,29 @@ impl<'a, T: AtRate<'a>> OnWall<T> {
         Statistics::weakest(self.tight().map(|one| one.found.statistics()))
     }
 
-    /// What it says of a claim, with a number in a few words.
-    pub(crate) fn part(&self, holds: Option<bool>, number: String, why: String) -> Part {
+    /// What it says of a claim, with a number in a few words. `judge` is asked of the whole, and where that decides also of
+    /// all strain rates but one in turn.
+    pub(crate) fn part(
+        &self,
+        judge: impl Fn(&Self) -> Option<bool>,
+        number: String,
+        why: String,
+    ) -> Part {
+        let holds = judge(self);
+        let rates = self.tight().map(|one| one.strain_rate);
+        let without = rates.filter(|_| holds.is_some()).map(|rate| {
+            let is_other = |one: &&Rc<Shown<T>>| one.strain_rate != rate;
+            let others = Self {
+                name: self.name.clone(),
+                all: self.all.iter().filter(is_other).cloned().collect(),
+                periods: self.periods,
+            };
+            (rate, judge(&others))
+        });
         Part {
             wall: self.name.clone(),
             holds,
+            hangs_on: without.filter(|(_, others)| *others != holds).collect(),
             statistics: self.statistics(),
             number,
             why,
@@ -239,6 +258,48 @@ impl<'a, T: AtRate<'a>> OnWall<T> {
 mod tests {
     use super::*;
     use crate::studies::StudyFile;
+
+    /// Whether a claim holds at a strain rate.
+    struct Told(Option<bool>);
+
+    impl<'a> AtRate<'a> for Told {
+        fn of(_: &Runs<'a>) -> Option<Self> {
+            None
+        }
+
+        fn statistics(&self) -> Statistics {
+            Statistics::at_one_rate([1.0].into_iter())
+        }
+    }
+
+    #[test]
+    fn each_strain_rate_is_left_out_in_turn() {
+        let hangs_on = |told: &[Option<bool>]| {
+            let shown = |(rate, holds): (i32, &Option<bool>)| {
+                Rc::new(Shown {
+                    strain_rate: f64::from(rate),
+                    // The fifth leaks, and counts neither way.
+                    escaped: if rate == 5 { 1.0 } else { 0.0 },
+                    found: Told(*holds),
+                })
+            };
+            let wall = OnWall {
+                name: "wall".to_owned(),
+                all: (1..).zip(told).map(shown).collect(),
+                periods: 1.0,
+            };
+            let judge = |one: &OnWall<Told>| one.rates(|told| told.0).hold();
+            let part = wall.part(judge, String::new(), String::new());
+            (part.holds, part.hangs_on)
+        };
+        let (yes, no) = (Some(true), Some(false));
+        assert_eq!(hangs_on(&[yes; 5]), (yes, vec![]));
+        // Without one that holds two of three remain, which is not nearly all.
+        let on = vec![(1.0, None), (2.0, None), (4.0, None)];
+        assert_eq!(hangs_on(&[yes, yes, no, yes, no]), (yes, on));
+        // An open verdict hangs on nothing.
+        assert_eq!(hangs_on(&[yes, no, no, yes, no]), (None, vec![]));
+    }
 
     #[test]
     fn every_study_of_a_wall_has_its_wall() {

@@ -284,7 +284,9 @@ fn initial_ratio(configuration: &Configuration, simulation: &Simulation) -> f64 
 /// The way from J/Jmax at the start to a threshold. A run that starts at the threshold is watched upward, a jammed one
 /// downward.
 fn direction(start: f64, threshold: f64) -> Direction {
-    match start < threshold || start == threshold && start < 1.0 {
+    // A mean over grains is rounded.
+    let is_at = (start - threshold).abs() <= 1e-9;
+    match start < threshold || is_at && start < 1.0 {
         true => Direction::Upward,
         false => Direction::Downward,
     }

@@ -107,11 +107,9 @@ pub(crate) fn grains_table(run: &Run) -> Result<Table, FormatError> {
 /// The bins of the late profile.
 pub(crate) fn late_profile(run: &Run) -> Vec<ProfileBin> {
     let configuration = run.configuration();
-    run.recorder().profile().late(
-        run.late_fraction(),
-        configuration.tube.wavelength,
-        u64::from(configuration.observe.samples_per_period),
-    )
+    run.recorder()
+        .profile()
+        .late(run.late_fraction(), configuration.tube.wavelength)
 }
 
 /// The kind of a column that is read so.

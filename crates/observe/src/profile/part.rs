@@ -32,8 +32,8 @@ impl WaveFrameProfile {
     /// A part of the wave over the last part of what was added, as [`WaveFrameProfile::late`] with its errors.
     ///
     /// A straight tube has no proper parts: all is NaN.
-    pub fn late_part(&self, fraction: f64, part: WavePart, period: u64) -> PartOfWave {
-        let (groups, whole) = self.late_groups(fraction, period);
+    pub fn late_part(&self, fraction: f64, part: WavePart) -> PartOfWave {
+        let (groups, whole) = self.blocks.late(fraction);
         let radius = |bin: usize| {
             let all = total(groups.iter().map(|group| &group[bin]));
             all.radius / all.looks
@@ -60,6 +60,9 @@ impl WaveFrameProfile {
     }
 }
 
+/// Difference below which two radii are the same \[d\].
+const SAME: f64 = 1e-9;
+
 /// The bins of a part of a wave of these radii.
 fn bins_of(part: WavePart, radii: &[f64]) -> Vec<usize> {
     let number = radii.len();
@@ -70,18 +73,28 @@ fn bins_of(part: WavePart, radii: &[f64]) -> Vec<usize> {
             (0..number).filter(|&bin| radii[bin] < mean).collect()
         }
         WavePart::Front => {
-            let (mut narrowest, mut widest) = (0, 0);
-            for bin in 1..number {
-                if radii[bin] < radii[narrowest] {
-                    narrowest = bin;
-                }
-                if radii[bin] > radii[widest] {
-                    widest = bin;
-                }
+            let least = radii.iter().copied().fold(f64::INFINITY, f64::min);
+            let largest = radii.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let is_narrowest = |bin: usize| radii[bin] <= least + SAME;
+            let is_widest = |bin: usize| radii[bin] >= largest - SAME;
+            if least + SAME >= largest {
+                return Vec::new();
             }
-            let length = (widest + number - narrowest) % number;
-            let ahead = (0..length).map(|step| (narrowest + step) % number);
-            ahead.collect()
+            // Of bins that are equally narrow the last, and of equally wide ones the first ahead, wherever the bins are
+            // counted from; where two are the widest, the widest place lies between them.
+            let on_from = |bin: usize| (bin..bin + number).map(|bin| bin % number);
+            let any = (0..number).find(|&bin| is_narrowest(bin));
+            let widest = any.and_then(|bin| on_from(bin).find(|&bin| is_widest(bin)));
+            let Some(widest) = widest else {
+                return Vec::new();
+            };
+            let between = is_widest((widest + 1) % number);
+            let back = (0..number).map(|step| (widest + number - step) % number);
+            let skipped = usize::from(!between);
+            let length = back.clone().position(is_narrowest).unwrap_or(0);
+            let mut front: Vec<usize> = back.take(length + 1).skip(skipped).collect();
+            front.reverse();
+            front
         }
     }
 }
@@ -96,5 +109,24 @@ mod tests {
         let radii = [3.5, 4.0, 3.8, 3.2, 3.0, 2.5, 3.0, 3.2];
         assert_eq!(bins_of(WavePart::Front, &radii), [5, 6, 7, 0]);
         assert_eq!(bins_of(WavePart::Narrow, &radii), [3, 4, 5, 6, 7]);
+        assert_eq!(bins_of(WavePart::Front, &[3.0; 4]), [0; 0]);
+    }
+
+    #[test]
+    fn the_front_of_a_wave_with_flat_parts_does_not_hang_on_where_bins_are_counted_from() {
+        // Two bins about the throat, two about the belly: half the wave. A flat throat, and a flat belly, of three.
+        let sine = [2.0, 2.0, 3.0, 4.0, 4.0, 3.0];
+        let flat = [2.0, 2.0, 2.0, 3.0, 4.0, 4.0, 4.0, 3.0];
+        for (radii, first, length) in [(&sine[..], 1, 3), (&flat[..], 2, 3)] {
+            for turned in 0..radii.len() {
+                let mut of = radii.to_vec();
+                of.rotate_right(turned);
+                // Means over many samples differ by rounding.
+                of[0] += 1e-13;
+                let expected = (0..length).map(|step| (first + step + turned) % radii.len());
+                let expected: Vec<usize> = expected.collect();
+                assert_eq!(bins_of(WavePart::Front, &of), expected, "{of:?}");
+            }
+        }
     }
 }

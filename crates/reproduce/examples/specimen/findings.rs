@@ -6,7 +6,7 @@ use peristalsis_figures::{FigureError, Width};
 use peristalsis_reproduce::report::{Program, Report};
 use peristalsis_reproduce::{
     Claim, Examination, Finding, Prose, Quantity, ReportFigure, ReportTable, ReproduceError, Size,
-    Statistics, StudyFile, StudyOutcome, Verdict, WallVerdict,
+    Statistics, StudyFile, StudyOutcome, Verdict, WallVerdict, Without,
 };
 
 const STUDY: &str = r#"# Transition times from rest as the bottleneck widens to the critical one.
@@ -219,6 +219,10 @@ fn slope() -> Finding {
         walls: vec![WallVerdict {
             wall: "24 × 26".to_owned(),
             verdict: Verdict::Differs,
+            hangs_on: vec![Without {
+                strain_rate: 0.2,
+                verdict: Verdict::Open,
+            }],
             number: "slope −2.21 ± 0.06".to_owned(),
             why: "*ε\u{307}* = 0.03 to 0.2".to_owned(),
         }],

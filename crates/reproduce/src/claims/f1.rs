@@ -105,7 +105,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut draft, mut parts, mut rows) = (Draft::of(PROSE), Vec::new(), Vec::new());
     let (mut farther, mut coasting) = (Vec::new(), Vec::new());
     for one in &walls {
-        let rates = one.rates(|kind| Some(kind.holds()));
+        let rates = |one: &OnWall<Kind<'_>>| one.rates(|kind| Some(kind.holds()));
         let place = |is_meant: fn(&Kind<'_>) -> bool| {
             let those = one.tight().filter(|kind| is_meant(&kind.found));
             let those = listed(those.map(|kind| kind.strain_rate));
@@ -113,8 +113,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         };
         farther.extend(place(|kind| kind.holds_farther()));
         coasting.extend(place(|kind| kind.coasts()));
-        let count = PROSE.text("count", values!(count = rates.count()));
-        parts.push(one.part(rates.hold(), count, rates.in_words()));
+        let count = PROSE.text("count", values!(count = rates(one).count()));
+        let why = rates(one).in_words();
+        parts.push(one.part(|one| rates(one).hold(), count, why));
         rows.extend(one.all.iter().map(|kind| Kind::row(&one.name, kind)));
         for kind in one.tight() {
             let (wall, rate, below) = (&one.name, kind.strain_rate, BELOW_THE_JUMP);

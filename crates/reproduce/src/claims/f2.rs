@@ -54,7 +54,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 /// What one wall says, by the laws next to w_c at each strain rate.
 fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
     let agrees = |exponent: &Uncertain| agrees(exponent, EXPONENT);
-    let rates = one.rates(|line| line.near.as_ref()?.is_linear(agrees));
+    let judged = |one: &OnWall<Line<'_>>| one.rates(|line| line.near.as_ref()?.is_linear(agrees));
+    let rates = judged(one);
     let exponents: Vec<Uncertain> = one.near().filter_map(Near::exponent).collect();
     let mean = weighted_mean(&exponents);
     let (wall, count) = (&one.name, exponents.len());
@@ -73,7 +74,7 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
         let (count, exponent) = (rates.count(), cell(mean));
         draft.weakness("led", values!(wall, count, exponent));
     }
-    one.part(rates.hold(), number, why)
+    one.part(|one| judged(one).hold(), number, why)
 }
 
 /// Wall, strain rate and distance of those lines whose nearest transition times lie farther from w_c than [`NEXT`].

@@ -40,16 +40,36 @@ fn power_at(one: &OnWall<Line<'_>>, distance: f64) -> Option<Uncertain> {
     fitted_power(known)
 }
 
+/// Power of the strain rate in C.
+fn power_of(one: &OnWall<Line<'_>>) -> Option<Uncertain> {
+    fitted_power(at_rates(one.near(), Near::amplitude))
+}
+
+fn collapsed_of(one: &OnWall<Line<'_>>) -> Option<Collapsed> {
+    collapse(one, EXPONENTS, |ensemble| Some(ensemble.fit?.mean))
+}
+
+/// Whether both halves hold; the collapse, which takes long, is sought where the other half does not decide.
+fn holds(one: &OnWall<Line<'_>>) -> Option<bool> {
+    let scales = power_of(one).and_then(|power| agrees(&power, AMPLITUDE));
+    if scales == Some(false) {
+        return scales;
+    }
+    all_hold(&[
+        scales,
+        collapsed_of(one).as_ref().and_then(Collapsed::agrees),
+    ])
+}
+
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut found: Vec<(String, Collapsed)> = Vec::new();
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut amplitudes) = (Vec::new(), Vec::new());
     let (mut windows, mut powers) = (Vec::new(), Vec::new());
     for one in OnWall::<Line<'_>>::all(evidence)? {
-        let mean = |ensemble: &WidthEnsemble| Some(ensemble.fit?.mean);
-        let collapsed = collapse(&one, EXPONENTS, mean);
+        let collapsed = collapsed_of(&one);
         let known = at_rates(one.near(), Near::amplitude);
-        let power = fitted_power(known.iter().copied());
+        let power = power_of(&one);
         let wall = &one.name;
         let rates = known.len();
         draft.compared("amplitude", values!(wall, rates), power, AMPLITUDE);
@@ -65,10 +85,6 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             let (found, chance) = (collapsed.in_words(), collapsed.chance());
             PROSE.text("collapse", values!(found, chance))
         });
-        let holds = all_hold(&[
-            power.and_then(|power| agrees(&power, AMPLITUDE)),
-            collapsed.as_ref().and_then(Collapsed::agrees),
-        ]);
         parts.push(one.part(holds, words, why));
         amplitudes.push((one.name.clone(), known));
         found.extend(collapsed.map(|collapsed| (one.name, collapsed)));

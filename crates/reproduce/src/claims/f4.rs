@@ -1,7 +1,5 @@
 //! F4: how the scatter of the transition times diverges, and whether it collapses.
 
-use peristalsis_analysis::WidthEnsemble;
-
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f4.md"));
@@ -20,8 +18,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut collapses) = (Vec::new(), Vec::new());
     for one in &walls {
-        let variance = |ensemble: &WidthEnsemble| Some(ensemble.fit?.variance);
-        let collapsed = collapse(one, SCALING, variance);
+        let collapsed = collapsed_of(one);
         parts.push(part(&mut draft, one, collapsed.as_ref()));
         rows.extend(one.tight().filter_map(|shown| row(&one.name, shown)));
         if let Some(collapsed) = collapsed {
@@ -55,26 +52,40 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 fn part(draft: &mut Draft, one: &OnWall<Line<'_>>, collapsed: Option<&Collapsed>) -> Part {
     let wall = &one.name;
     let agrees_at = |line: &Line<'_>| agrees(&line.near.as_ref()?.variance_exponent()?, EXPONENT);
-    let judged = one.rates(agrees_at);
+    let judged = |one: &OnWall<Line<'_>>| one.rates(agrees_at);
     let exponents = at_rates(one.near(), Near::variance_exponent);
     let exponents: Vec<Uncertain> = exponents.into_iter().map(|one| one.1).collect();
     let mean = weighted_mean(&exponents);
-    let amplitudes = at_rates(one.near(), |near| near.variance_amplitude(EXPONENT));
-    let power = fitted_power(amplitudes.iter().copied());
-    let scales = all_hold(&[
-        power.and_then(|power| agrees(&power, AMPLITUDE)),
-        collapsed.and_then(Collapsed::agrees),
-    ]);
+    let amplitudes =
+        |one: &OnWall<Line<'_>>| at_rates(one.near(), |near| near.variance_amplitude(EXPONENT));
+    let power = |one: &OnWall<Line<'_>>| fitted_power(amplitudes(one));
+    let agrees_power = |one: &OnWall<Line<'_>>| agrees(&power(one)?, AMPLITUDE);
+    let scales = all_hold(&[agrees_power(one), collapsed.and_then(Collapsed::agrees)]);
     let rates = exponents.len();
     draft.compared("exponent", values!(wall, rates), mean, EXPONENT);
-    let rates = amplitudes.len();
-    draft.compared("amplitude", values!(wall, rates), power, AMPLITUDE);
-    let (exponent, power) = (cell(mean), cell(power));
-    let (words, scaling) = (judged.in_words(), said(scales));
-    let (half, chance) = (said(judged.hold()), cell_of(collapsed, Collapsed::chance));
+    let rates = amplitudes(one).len();
+    let found = power(one);
+    draft.compared("amplitude", values!(wall, rates), found, AMPLITUDE);
+    let (exponent, power) = (cell(mean), cell(found));
+    let all = judged(one);
+    let (words, scaling) = (all.in_words(), said(scales));
+    let (half, chance) = (said(all.hold()), cell_of(collapsed, Collapsed::chance));
     let why = PROSE.text("why", values!(half, words, scaling, chance));
     let number = PROSE.text("number", values!(exponent, power));
-    one.part(all_hold(&[judged.hold(), scales]), number, why)
+    // The collapse, which takes long, is sought where the rest does not decide.
+    let holds = |one: &OnWall<Line<'_>>| {
+        let rest = [judged(one).hold(), agrees_power(one)];
+        if rest.contains(&Some(false)) {
+            return Some(false);
+        }
+        let collapses = collapsed_of(one).as_ref().and_then(Collapsed::agrees);
+        all_hold(&[rest[0], rest[1], collapses])
+    };
+    one.part(holds, number, why)
+}
+
+fn collapsed_of(one: &OnWall<Line<'_>>) -> Option<Collapsed> {
+    collapse(one, SCALING, |ensemble| Some(ensemble.fit?.variance))
 }
 
 fn row(wall: &str, shown: &Shown<Line<'_>>) -> Option<Vec<String>> {

@@ -223,7 +223,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             draft.quantity("integral", values!(wall, rate), found);
         }
     }
-    let collapses: Vec<Option<Collapsed>> = walls.iter().map(scaling).collect();
+    let collapses: Vec<Option<Collapsed>> = walls.iter().map(collapsed_of).collect();
     let parts = walls.iter().zip(&collapses);
     let parts = parts.map(|(one, collapsed)| part(one, collapsed.as_ref()));
     let judgement = Judgement::of(parts.collect(), &CLAIM.needed);
@@ -288,11 +288,18 @@ fn part(one: &OnWall<Moments>, collapsed: Option<&Collapsed>) -> Part {
         "why",
         values!(rates = rates_of_peak, grows, integral, scaling),
     );
-    let holds = all_hold(&[
-        rates.hold(),
-        integrals.hold(),
-        collapsed.and_then(Collapsed::holds),
-    ]);
+    // The collapse, which takes long, is sought where the rest does not decide.
+    let holds = |one: &OnWall<Moments>| {
+        let rest = [
+            one.rates(Moments::diverges).hold(),
+            one.rates(Moments::grows_without_bound).hold(),
+        ];
+        if rest.contains(&Some(false)) {
+            return Some(false);
+        }
+        let collapses = collapsed_of(one).as_ref().and_then(Collapsed::holds);
+        all_hold(&[rest[0], rest[1], collapses])
+    };
     one.part(holds, words, why)
 }
 
@@ -311,7 +318,7 @@ fn against_length(rows: &[Row<'_>]) -> Option<Uncertain> {
 }
 
 /// Collapse of the rising sides of the peaks of all strain rates, with free exponents.
-fn scaling(one: &OnWall<Moments>) -> Option<Collapsed> {
+fn collapsed_of(one: &OnWall<Moments>) -> Option<Collapsed> {
     let mut curves = Curves::default();
     for shown in one.tight() {
         let rising = shown.found.rising().into_iter();

@@ -64,7 +64,8 @@ impl Jump<'_> {
 
 /// What one wall says: at how many strain rates the flow jumps, and from the lowest jump to the highest.
 fn part(one: &OnWall<Jump<'_>>) -> Part {
-    let rates = one.rates(|jump| Some(jump.branch.jumps()));
+    let judged = |one: &OnWall<Jump<'_>>| one.rates(|jump| Some(jump.branch.jumps()));
+    let rates = judged(one);
     let jumping = one.tight().filter(|one| one.found.branch.jumps());
     let heights = jumping.filter_map(|one| Some(one.found.height?.value));
     let heights = match ends(heights) {
@@ -72,7 +73,7 @@ fn part(one: &OnWall<Jump<'_>>) -> Part {
         None => String::new(),
     };
     let count = PROSE.text("count", values!(count = rates.count(), heights));
-    one.part(rates.hold(), count, rates.in_words())
+    one.part(|one| judged(one).hold(), count, rates.in_words())
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {

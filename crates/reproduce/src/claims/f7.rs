@@ -20,7 +20,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for (place, one) in OnWall::<Line<'_>>::all(evidence)?.iter().enumerate() {
         periods = periods.max(one.periods);
         rows.extend(one.all.iter().map(|shown| row(&one.name, shown)));
-        let critical = at_rates(one.near(), Near::critical_width);
+        let critical = critical_widths(one);
         let drawn = points(&one.name, critical.iter().copied());
         // Points that fall on one another are told apart by open marks.
         let is_open = place % 2 == 1;
@@ -46,6 +46,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.table("critical widths", values!(periods), rows);
     draft.chart("critical-width", &[], ChartFigure::new(panel))?;
     Ok(draft.judged(judgement, &summary))
+}
+
+fn critical_widths(one: &OnWall<Line<'_>>) -> Critical {
+    at_rates(one.near(), Near::critical_width)
 }
 
 /// The line of a wall, through critical widths with their errors and a scatter of their own. `None` with too few strain rates.
@@ -87,15 +91,17 @@ fn part(
         "why",
         values!(rates, straight, chi, freedom, of_source, explained),
     );
-    let is_straight = linearity.map(|chance| chance >= BY_CHANCE);
-    let holds = all_hold(&[
-        is_straight,
-        line.and_then(|line| agrees(&line.line.slope, SLOPE)),
-    ]);
     let slope = line.map(|line| line.line.slope);
     let determination = cell_of(line, |line| number(line.determination, 3));
     let words = PROSE.text("number", values!(slope = cell(slope), determination));
     one.part(holds, words, why)
+}
+
+/// Whether the line is straight, and as steep as the source's.
+fn holds(one: &OnWall<Line<'_>>) -> Option<bool> {
+    let line = straight(&critical_widths(one))?;
+    let is_straight = line.linearity.map(|chance| chance >= BY_CHANCE);
+    all_hold(&[is_straight, agrees(&line.line.slope, SLOPE)])
 }
 
 /// The strain rates of a line, and those left out.

@@ -229,7 +229,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 }
 
 fn part(one: &OnWall<Loop<'_>>) -> Part {
-    let rates = one.rates(Loop::is_bistable);
+    let judged = |one: &OnWall<Loop<'_>>| one.rates(Loop::is_bistable);
+    let rates = judged(one);
     let broken = one.tight().filter(|shown| shown.found.break_up().is_some());
     let broken = listed(broken.map(|shown| shown.strain_rate));
     let broken = match broken.is_empty() {
@@ -238,7 +239,7 @@ fn part(one: &OnWall<Loop<'_>>) -> Part {
     };
     let count = PROSE.text("count", values!(count = rates.count()));
     let why = PROSE.text("why", values!(rates = rates.in_words(), broken));
-    one.part(rates.hold(), count, why)
+    one.part(|one| judged(one).hold(), count, why)
 }
 
 /// Denser grains from both starts at one width.

@@ -16,6 +16,9 @@ const MOST_NUMBERS: usize = 3;
 const MOST_COLUMNS: usize = 7;
 const MOST_CELLS: usize = 70;
 
+/// Above the strain rates without which a verdict would be another.
+const HANGS_ON: &str = "hangs on *ε\u{307}* =";
+
 /// What stands above the table.
 const OPENING: &str = include_str!("document.md");
 
@@ -53,7 +56,7 @@ fn overview(report: &Report) -> ReportTable {
     let walls = report.walls();
     let on = |finding: &Finding, wall: &str| {
         let found = finding.walls.iter().find(|one| one.wall == wall);
-        found.map(|one| (one.verdict, markdown(&one.number)))
+        found.map(|one| (one.verdict_with_mark(), markdown(&one.number)))
     };
     let row = |examination: &Examination| {
         let (id, finding) = (examination.experiment.id, &examination.finding);
@@ -61,8 +64,8 @@ fn overview(report: &Report) -> ReportTable {
         let verdicts = walls.iter().map(|tally| {
             let found = on(finding, tally.wall);
             found.map_or_else(String::new, |(verdict, number)| match &*number {
-                "" | "–" => verdict.name().to_owned(),
-                number => format!("{}: {number}", verdict.name()),
+                "" | "–" => verdict,
+                number => format!("{verdict}: {number}"),
             })
         });
         let number = finding.quantities.first().map(number_of);
@@ -162,16 +165,22 @@ fn digest(finding: &Finding) -> Option<ReportTable> {
         one.head.len() <= MOST_COLUMNS && (1..=MOST_CELLS).contains(&cells)
     });
     let found = if !finding.walls.is_empty() {
+        let hangs = finding.walls.iter().any(|wall| !wall.hangs_on.is_empty());
         let rows = finding.walls.iter().map(|wall| {
             let verdict = wall.verdict.name().to_owned();
-            vec![
+            let mut row = vec![
                 wall.wall.clone(),
                 verdict,
                 wall.number.clone(),
                 wall.why.clone(),
-            ]
+            ];
+            if hangs {
+                row.push(wall.hangs_on_in_words());
+            }
+            row
         });
-        ReportTable::new("", ["wall", "verdict", "the number", "more"], rows)
+        let head = ["wall", "verdict", "the number", "more", HANGS_ON];
+        ReportTable::new("", head.into_iter().take(4 + usize::from(hangs)), rows)
     } else if let Some(small) = small {
         small.clone()
     } else {

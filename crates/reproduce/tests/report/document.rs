@@ -44,6 +44,7 @@ fn walls_stand_across_with_the_claims_that_each_meets() {
     let wall = |wall: &str, verdict| WallVerdict {
         wall: wall.to_owned(),
         verdict,
+        hangs_on: Vec::new(),
         number: "*α* = 1.1 ± 0.2".to_owned(),
         why: "so".to_owned(),
     };

@@ -311,8 +311,14 @@ pub(super) fn residence_time(late: &Late) -> Option<(f64, f64)> {
 /// Coefficient of axial dispersion, D = d var(z - <z>)/(2 dt), and its error \[d^2/t\]; NaN below two whole late periods.
 ///
 /// The variance is that of the displacements since an origin in the late part of the run.
-pub(super) fn axial_dispersion(late: &[Sample], dispersion: &AxialDispersion) -> (f64, f64) {
-    let start = late.first().map_or(0.0, |sample| sample.time);
+pub(super) fn axial_dispersion(
+    samples: &[Sample],
+    late: &[Sample],
+    dispersion: &AxialDispersion,
+) -> (f64, f64) {
+    // A sample's time is its end.
+    let before = samples[..samples.len() - late.len()].last();
+    let start = before.map_or(0.0, |sample| sample.time);
     let rates = dispersion.rates_from(start);
     (super::mean(&rates), error_of(rates.into_iter()))
 }

@@ -85,7 +85,7 @@ pub struct Summary {
     /// wave a turn \[m d^2/t^2\]; `None` of a static wave.
     pub wall_torque: Option<(f64, f64)>,
     /// How the grains mixed; `None` below 20 grains, or of an open tube.
-    pub mixed: Option<MixedGrains>,
+    pub mixed: MixedGrains,
     /// Where grains of several sizes gathered.
     pub segregated: SegregatedSizes,
     /// Steps done.
@@ -148,7 +148,7 @@ impl Summary {
         let profile = late_profile(run);
         let part = |part| {
             let profile = recorder.profile();
-            profile.late_part(fraction, part, samples_per_period)
+            profile.late_part(fraction, part)
         };
         let whole = part(WavePart::Whole);
         let pressures = profile.iter().map(|bin| bin.wall_pressure.0);
@@ -200,7 +200,7 @@ impl Summary {
                 Some(_) => None,
                 None => residence_time(&late),
             },
-            axial_dispersion: axial_dispersion(&late, recorder.dispersion()),
+            axial_dispersion: axial_dispersion(samples, &late, recorder.dispersion()),
             late,
             packing: *run.packing(),
         }

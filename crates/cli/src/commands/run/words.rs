@@ -247,7 +247,8 @@ fn told(
 
 /// How far the grains are mixed, once a period has passed.
 fn mixing(run: &Run, summary: &Summary) -> String {
-    let Some(mixed) = summary.mixed.filter(|_| run.recorder().periods() > 0) else {
+    let mixed = summary.mixed;
+    let (Some(axial), Some(radial)) = (mixed.axial, mixed.radial) else {
         return String::new();
     };
     let since = |time: Option<f64>| {
@@ -260,9 +261,9 @@ fn mixing(run: &Run, summary: &Summary) -> String {
     };
     format!(
         "\nmixing, 0 apart to 1 at random: {}{} along the tube, {}{} across it",
-        measured(mixed.axial),
+        measured(axial),
         since(mixed.axial_time),
-        measured(mixed.radial),
+        measured(radial),
         since(mixed.radial_time)
     )
 }

@@ -109,11 +109,14 @@ fn statistics(examination: &Examination) -> Markup {
 
 /// The verdict on each wall, and why.
 fn walls(walls: &[WallVerdict]) -> Markup {
+    let hangs = walls.iter().any(|one| !one.hangs_on.is_empty());
     html! {
         div.scroll tabindex="0" role="region" aria-label="Verdict by wall" {
             table.walls {
                 thead {
-                    tr { th scope="col" { "Wall" } th scope="col" { "Verdict" } th scope="col" { "Number" } th scope="col" { "Why" } }
+                    tr { th scope="col" { "Wall" } th scope="col" { "Verdict" } th scope="col" { "Number" } th scope="col" { "Why" }
+                        @if hangs { th scope="col" { "Hangs on " (rich("*ε\u{307}* =")) } }
+                    }
                 }
                 tbody {
                     @for one in walls {
@@ -122,6 +125,7 @@ fn walls(walls: &[WallVerdict]) -> Markup {
                             td { (one.verdict.name()) }
                             td { (rich(&one.number)) }
                             td { (rich(&one.why)) }
+                            @if hangs { td { (one.hangs_on_in_words()) } }
                         }
                     }
                 }

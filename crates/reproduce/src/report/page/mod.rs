@@ -117,7 +117,8 @@ fn by_wall(report: &Report) -> Markup {
                 h2 { "Verdict by wall" }
                 p {
                     "A wall is named by its spheres a ring and rings a wave. The source had one tube and does not say which: "
-                    "a claim counts as reproduced where one wall or more reproduces it."
+                    "a claim counts as reproduced where one wall or more reproduces it. "
+                    "† It would be open without one of the wall's strain rates, ‡ it would be the opposite."
                 }
                 div.scroll tabindex="0" role="region" aria-label="Verdict by wall" {
                     table.walls {
@@ -158,7 +159,7 @@ fn on_wall(examination: &Examination, wall: &str) -> Markup {
         .find(|one| one.wall == wall);
     html! {
         @if let Some(found) = found {
-            span.badge.(found.verdict.name()) { span.mark.(found.verdict.name()) aria-hidden="true" {} (found.verdict.name()) }
+            span.badge.(found.verdict.name()) { span.mark.(found.verdict.name()) aria-hidden="true" {} (found.verdict_with_mark()) }
             " " (rich(&found.number))
         }
     }
