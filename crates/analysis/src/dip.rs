@@ -35,7 +35,8 @@ struct Place {
 ///
 /// found from the greatest convex minorant and the least concave majorant of F_n on a shrinking modal interval. The
 /// probability is (1 + number of simulated dips as large)/(1 + simulations); it is exact for a uniform distribution and
-/// too large for others, so that a small one is safe. Give one value per run: values of one series are not independent.
+/// too large for others, so that a small one is safe; but values that are rounded to a tenth of their range look like several
+/// peaks. Give one value per run: values of one series are not independent.
 /// Source: Hartigan & Hartigan, Ann. Stat. 13, 70 (1985), sections 3 and 5.
 ///
 /// # Errors

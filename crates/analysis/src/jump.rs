@@ -52,9 +52,13 @@ pub fn jump_height(
     let (lower, lower_slope) = branch(lower, critical.value)?;
     let shift = (upper_slope - lower_slope) * critical.error;
     let variance = upper.error * upper.error + lower.error * lower.error + shift * shift;
+    // At w_c a branch is known as well as w_c is; both move together.
+    let at_critical = |branch: Uncertain, slope: f64| {
+        Uncertain::normal(branch.value, branch.error.hypot(slope * critical.error))
+    };
     Ok(Jump {
-        upper,
-        lower,
+        upper: at_critical(upper, upper_slope),
+        lower: at_critical(lower, lower_slope),
         height: Uncertain::normal(upper.value - lower.value, variance.sqrt()),
     })
 }
@@ -84,7 +88,8 @@ mod tests {
     #[test]
     fn intervals_of_the_height_cover_with_an_uncertain_critical_width() {
         let (jammed, unjammed) = ([2.6, 2.65, 2.7, 2.75], [2.85, 2.9, 2.95]);
-        let mut coverage = Coverage::of([("height", 0.7)]);
+        let truth = [("height", 0.7), ("upper", 0.9), ("lower", 0.2)];
+        let mut coverage = Coverage::of(truth);
         for seed in 0..400 {
             let noise = white_noise(seed, 8);
             let upper: Vec<f64> = (0..4)
@@ -100,7 +105,7 @@ mod tests {
                 critical,
             )
             .unwrap();
-            coverage.count([jump.height]);
+            coverage.count([jump.height, jump.upper, jump.lower]);
         }
         coverage.judge([0.01; 2]);
     }

@@ -158,8 +158,8 @@ impl Fractions {
 ///
 /// One row per run; `jammed`: how the run ended, whatever it started from, so that the fraction falls with the width from
 /// either start. Intervals by profile likelihood. Where all runs jam up to one width and none from the next on, the
-/// likelihood has no maximum: the width is then the middle of the bracket, the 95 per cent interval is the bracket, and
-/// the error, by which the 68 per cent interval goes, is its length over sqrt(12); with mixed runs at one width
+/// likelihood has no maximum: the width is then the middle of the bracket, the 95 per cent interval is the bracket, the
+/// 68 per cent interval the middle 68 per cent of it, and the error its length over sqrt(12); with mixed runs at one width
 /// between, that width, with its neighbours as the bracket. With three runs at each width or more that bracket covers the
 /// truth in 96 cases of 100 or more, with two in 87, with one in 63 (made-up runs whose spread is 0.3 of the distance of
 /// the widths). Sources: Cox & Snell, Analysis of Binary Data (1989), chapter 2; separation: Albert & Anderson,

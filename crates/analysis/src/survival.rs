@@ -1,6 +1,6 @@
 //! Survival curve of censored transition times, without assuming a distribution.
 
-use crate::columns::jackknife_error;
+use crate::columns::{jackknife_error, mean_and_scatter};
 use crate::error::{Error, enough, enough_observed, ensure};
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
@@ -194,7 +194,7 @@ impl Survival {
     ///
     /// `m = int_0^h S dt`,   `error^2 = d/(d - 1) sum_j A_j^2 d_j/(n_j (n_j - d_j))`,   `A_j = int_(t_j)^h S dt`
     ///
-    /// d observed transitions. It lies below the true mean by `int_h^inf S dt`: near w_c, where the horizon is no
+    /// d observed transitions; intervals of Student's distribution. It lies below the true mean by `int_h^inf S dt`: near w_c, where the horizon is no
     /// longer large against tau, this is most of it. Source: Kaplan & Meier (1958), section 6; Royston & Parmar, BMC
     /// Med. Res. Methodol. 13, 152 (2013).
     ///
@@ -221,7 +221,7 @@ impl Survival {
         }
         let observed = self.observed as f64;
         let error = (variance * observed / (observed - 1.0)).sqrt();
-        Ok(Uncertain::normal(mean, error))
+        Ok(Uncertain::student(mean, error, self.runs - 1))
     }
 
     fn check_horizon(&self, horizon: f64, needed: usize) -> Result<(), Error> {
@@ -253,7 +253,9 @@ fn log_log(survival: f64, log_variance: f64, before: Uncertain) -> Uncertain {
 /// `<t> = int_0^h S dt`,   `<t^2> = int_0^h 2 t S dt`,   variance = (`<t^2> - <t>^2`) n/(n - 1)
 ///
 /// with the Kaplan-Meier curve S of n runs: without censoring before the horizon the sample variance of the cut-off
-/// times. The error of the mean is that of [`Survival::restricted_mean`], that of the variance the jackknife's.
+/// times. The error of the mean is that of [`Survival::restricted_mean`]. Intervals of the variance are from the jackknife of
+/// its logarithm, with Student's distribution; its error is half of the narrow one. Where runs without one of them have no
+/// variance they are symmetric, from the jackknife of the variance itself. Source: Miller, Ann. Math. Stat. 39, 567 (1968).
 ///
 /// # Errors
 /// [`Error::TooFewObserved`] below 3 transitions, [`Error::Horizon`], [`Error::NonFinite`], [`Error::Negative`],
@@ -280,8 +282,24 @@ pub fn restricted_moments(
     Ok(RestrictedMoments {
         horizon,
         mean: survival.restricted_mean(horizon)?,
-        variance: Uncertain::normal(variance_of(times), jackknife_error(&without_one)),
+        variance: with_jackknife(variance_of(times), &without_one),
     })
+}
+
+/// A variance with intervals from its values with one run left out.
+fn with_jackknife(variance: f64, without_one: &[f64]) -> Uncertain {
+    let runs = without_one.len() as f64;
+    if variance <= 0.0 || without_one.iter().any(|&left| left <= 0.0) {
+        return Uncertain::normal(variance, jackknife_error(without_one));
+    }
+    let pseudo = without_one
+        .iter()
+        .map(|&left| runs * libm::log(variance) - (runs - 1.0) * libm::log(left));
+    let (mean, scatter) = mean_and_scatter(&pseudo.collect::<Vec<_>>());
+    let error = (scatter / (runs * (runs - 1.0))).sqrt();
+    let logarithm = Uncertain::student(mean, error, without_one.len() - 1);
+    let intervals = [logarithm.interval_68, logarithm.interval_95];
+    Uncertain::between(variance, intervals.map(|interval| interval.map(libm::exp)))
 }
 
 #[cfg(test)]

@@ -107,14 +107,15 @@ impl Uncertain {
         }
     }
 
-    /// A number of which only two bounds are known, most likely `value`: its error is that of a uniform distribution between
-    /// them. It makes the narrow interval; the bounds are the wide one.
+    /// A number of which only two bounds are known, most likely `value`: its error is the standard deviation of a uniform
+    /// distribution between them, and the narrow interval holds 68.27 per cent of that. The bounds are the wide one.
     pub fn bracketed(value: f64, lower: f64, upper: f64) -> Self {
-        let error = (upper - lower) / 12_f64.sqrt();
+        let length = upper - lower;
+        let half = 0.5 * (1.0 - 2.0 * NARROW_TAIL) * length;
         Self {
             value,
-            error,
-            interval_68: Interval::new((value - error).max(lower), (value + error).min(upper)),
+            error: length / 12_f64.sqrt(),
+            interval_68: Interval::new((value - half).max(lower), (value + half).min(upper)),
             interval_95: Interval::new(lower, upper),
         }
     }
@@ -277,7 +278,8 @@ mod tests {
         assert!((near_one.error - 12_f64.sqrt().recip()).abs() < 1e-15);
         assert_eq!(near_one.interval_95, Interval::new(1.0, 2.0));
         assert_eq!(near_one.interval_68.lower, 1.0);
-        assert_eq!(near_one.interval_68.upper, 1.1 + near_one.error);
+        // 68.27 per cent of a uniform number, in the middle.
+        assert!((near_one.interval_68.upper - 1.1 - 0.341_345).abs() < 1e-6);
     }
 
     #[test]

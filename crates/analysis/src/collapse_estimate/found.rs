@@ -2,6 +2,7 @@
 
 use super::STIFFNESS;
 use super::likelihood::Likelihood;
+use crate::collapse::CurvePoint;
 use crate::collapse_fit::place_of_start;
 use crate::error::Error;
 use crate::numerics::quasi_newton::Smallest;
@@ -19,6 +20,8 @@ const MOST_CUTS: u32 = 12;
 /// Factor of the errors from which on either the errors or the scaling are wrong: twenty points exceed it by
 /// chance once in a thousand data sets.
 const MOST_STRETCH: f64 = 1.5;
+/// Ratio of the lengths of two scaled curves up to which intervals cover.
+const MOST_UNLIKE: f64 = 4.0;
 /// Most free parameters beside a correction for which intervals were found to cover as they should.
 const MOST_BESIDE_A_CORRECTION: usize = 3;
 
@@ -260,6 +263,28 @@ impl<'a> Found<'a> {
         places.position(|(one, place)| !one.interval_95.contains(place))
     }
 
+    /// How far the points of each curve reach along the scaled abscissa, of those that have two or more.
+    fn lengths(&self) -> impl Iterator<Item = f64> {
+        let parameters = self
+            .best
+            .place
+            .split_last()
+            .map_or(&[][..], |(_, parameters)| parameters);
+        let scaled = self.likelihood.collapse.scaled(parameters);
+        let length = |points: Vec<CurvePoint>| {
+            let usable = points.iter().filter(|point| point.is_usable());
+            let (least, most) = usable.fold((f64::INFINITY, f64::NEG_INFINITY), |ends, point| {
+                (ends.0.min(point.x), ends.1.max(point.x))
+            });
+            (most > least).then_some(most - least)
+        };
+        scaled
+            .into_iter()
+            .filter_map(length)
+            .collect::<Vec<_>>()
+            .into_iter()
+    }
+
     /// Why not to trust the parameters.
     pub(super) fn doubts(&self, parameters: &[Uncertain]) -> Vec<String> {
         let mut doubts = Vec::new();
@@ -290,6 +315,16 @@ impl<'a> Found<'a> {
         if lost > 0 {
             doubts.push(format!(
                 "{lost} points lie beyond the critical value, or have no scaled value"
+            ));
+        }
+        let lengths = self.lengths();
+        let (least, most) = lengths.fold((f64::INFINITY, 0.0_f64), |(least, most), length| {
+            (least.min(length), most.max(length))
+        });
+        if most > MOST_UNLIKE * least {
+            doubts.push(format!(
+                "one scaled curve is {:.1} times as long as another: the exponents are biased on made-up data of this kind; choose the points of each curve so that they cover the same scaled range",
+                most / least
             ));
         }
         let stretch = self.likelihood.variance(&curve, lost).sqrt();

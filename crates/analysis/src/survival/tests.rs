@@ -39,10 +39,26 @@ fn without_censoring_the_restricted_moments_are_those_of_the_sample() {
     assert!((found.mean.value - plain.mean).abs() < 1e-14);
     assert!((found.mean.error - plain.mean_error).abs() < 1e-14);
     assert!((found.variance.value - plain.variance).abs() < 1e-13);
-    assert!((found.variance.error - plain.variance_error).abs() < 1e-13);
     let survival = Survival::new(&runs).unwrap();
     assert_eq!(survival.median().unwrap().value, 2.0);
     assert_eq!(survival.at(7.0), 0.0);
+}
+
+/// Symmetric intervals from the jackknife of the variance itself cover it in 0.55 and 0.77 of the cases.
+#[test]
+fn intervals_of_the_variance_of_ten_runs_cover() {
+    let mut coverage = Coverage::of([("mean", 3.0), ("variance", 3.0)]);
+    for seed in 0..1000 {
+        let mut randomness = Randomness::new(seed, 1);
+        let mut exponential = || -libm::log(1.0 - randomness.uniform());
+        let runs: Vec<Transition> = (0..10)
+            .map(|_| Transition::new(exponential() + exponential() + exponential(), true))
+            .collect();
+        let found = restricted_moments(&runs, 1e3).unwrap();
+        assert!(found.variance.interval_95.lower > 0.0);
+        coverage.count([found.mean, found.variance]);
+    }
+    coverage.judge([0.05, 0.04]);
 }
 
 #[test]

@@ -57,8 +57,8 @@ pub fn published_in_words(all: &[PublishedRows], drawn: Option<&Drawn>) -> Optio
     let but = match older {
         0 => " to the bit".to_owned(),
         several => format!(
-            " to the bit, in {several} of them but for what an older program read off otherwise: last digits of sums ({}), \
-             and forces of contacts, which it looked at in few phases of the wave",
+            " to the bit, in {several} of them but for what an older program read off otherwise, as the changelog says: errors, \
+             averages over the late part of long runs, forces of contacts, and last digits of {}",
             RESUMMED.join(", ")
         ),
     };

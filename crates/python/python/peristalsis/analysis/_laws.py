@@ -153,6 +153,10 @@ def fit_law_with_scatter(
     ValueError
         For columns of unequal length.
 
+    Notes
+    -----
+    Kalbfleisch & Prentice, The Statistical Analysis of Failure Time Data (2002), chapter 3.
+
     Examples
     --------
     >>> import numpy as np

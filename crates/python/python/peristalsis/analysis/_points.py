@@ -132,6 +132,10 @@ def fit_line(x: Numbers, y: Numbers, error: Numbers) -> LineFit:
     ValueError
         For columns of unequal length.
 
+    Notes
+    -----
+    Weights 1/error^2: Bevington & Robinson, Data Reduction and Error Analysis (2003), chapter 6.
+
     Examples
     --------
     >>> from peristalsis import analysis

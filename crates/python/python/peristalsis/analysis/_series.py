@@ -101,6 +101,12 @@ def stationary_mean(series: Numbers) -> StationaryMean:
     AnalysisError
         Where the series is too short, or not finite.
 
+    Notes
+    -----
+    A series whose halves differ by more than three of their errors is refused: it drifts. Of white noise that is one in ten
+    with 100 samples, one in a hundred with 400. White, Simulation 69, 323 (1997): MSER-5; Geweke, in Bayesian Statistics 4
+    (1992).
+
     Examples
     --------
     >>> import numpy as np
@@ -130,6 +136,11 @@ def stationarity(series: Numbers) -> Stationarity:
     ------
     AnalysisError
         Where the series is too short, or not finite.
+
+    Notes
+    -----
+    z = (m_2 - m_1)/sqrt(error_1^2 + error_2^2), m the means of the halves; Geweke, Bayesian Statistics 4, 169 (1992), there with
+    the first tenth and the last half.
 
     Examples
     --------
@@ -161,6 +172,10 @@ def ensemble_moments(replicates: Iterable[Numbers]) -> list[Moments]:
         For series of unequal length.
     AnalysisError
         For too few replicates, or values that are not finite.
+
+    Notes
+    -----
+    Errors of variances by the jackknife: Efron, The Jackknife, the Bootstrap and Other Resampling Plans (SIAM, 1982), chapter 3.
 
     Examples
     --------

@@ -193,6 +193,11 @@ def transition_time(
     AnalysisError
         For averages that are not finite.
 
+    Notes
+    -----
+    Kaplan & Meier, J. Am. Stat. Assoc. 53, 457 (1958); Royston & Parmar, BMC Med. Res. Methodol. 13, 152 (2013); intervals of
+    the variance from the jackknife of its logarithm: Miller, Ann. Math. Stat. 39, 567 (1968).
+
     Examples
     --------
     >>> from peristalsis import analysis
