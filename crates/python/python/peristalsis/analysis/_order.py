@@ -37,9 +37,8 @@ def fraction_crossing(width: Numbers, jammed: npt.ArrayLike) -> FractionCrossing
 
     Notes
     -----
-    Where all runs jam up to one width and none from the next on, the width is the middle of that bracket, and the bracket the
-    interval of 95 per cent. It covers the truth in 96 cases of 100 or more with three runs a width, in 87 with two and in 63
-    with one (made-up runs whose fraction falls over 0.3 of the distance of the widths): give each width three.
+    Where all runs jam up to one width and none from the next on, the width is the middle of that bracket. The interval of
+    95 per cent holds the bracket, and what the likelihood does not exclude: with one or two runs a width more than the bracket.
     Cox & Snell, Analysis of Binary Data (1989), chapter 2; Albert & Anderson, Biometrika 71, 1 (1984).
 
     Examples
