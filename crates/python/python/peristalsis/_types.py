@@ -556,8 +556,8 @@ class OpenSummary(TypedDict):
     transit_time_variance: float | None
     """variance of that time [t^2]"""
     refill_efficiency: float | None
-    """volume of the grains discharged in a period over the clear volume of a wavelength; missing for a static
-    wave"""
+    """volume of the grains discharged in a period over the clear volume of a wavelength (with segments the mean
+    over a period); missing for a static wave"""
     refill_efficiency_error: float | None
     """its standard error"""
 
@@ -713,7 +713,8 @@ class Summary(_Rare):
     """its standard error [d/t]"""
     front_normal_force: float
     """part of wall_normal_force in the front of the wave: in the bins of the profile from that of its narrowest
-    place on, up to that of the widest one ahead, without it [m d/t^2]"""
+    place on (the last of equally narrow ones), up to that of the widest one ahead (the first of equally wide ones),
+    without it [m d/t^2]"""
     front_normal_force_error: float
     """its standard error [m d/t^2]"""
     front_tangential_force: float

@@ -15,12 +15,13 @@ class AutocorrelationTime:
     time : float
         tau = 1/2 + sum of the normalised autocorrelations, in samples; 1/2 for uncorrelated samples.
     error : float
-        Its standard error, 2 tau sqrt((W + 1/2 - tau)/n); for exponential correlations some 15 per cent too large, and
-        meaningless unless converged.
+        Its standard error, 2 |tau| sqrt((W + 1/2 - tau)/n); for exponential correlations some 15 per cent too large,
+        and meaningless unless converged.
     window : int
         Largest lag W of the sum, in samples.
     converged : bool
-        Whether the window closed by itself; if not, `time` is a lower bound, and the series is too short.
+        Whether the window closed by itself; if not, `time` is a lower bound, and the series is too short. Of a series
+        shorter than 100 tau the time comes out too small even so.
 
     Examples
     --------
@@ -200,7 +201,8 @@ class Estimate:
     error : float
         Standard error of the mean (one standard deviation), correlations included.
     error_uncertainty : float
-        Standard error of `error` itself: error/sqrt(2 (blocks - 1)).
+        Standard error of `error` itself: error/sqrt(2 (blocks - 1)), times sqrt(5/2) where shorter blocks have their
+        part in it.
     autocorrelation_time : float
         Integrated autocorrelation time that the error implies, in samples: (error/error of uncorrelated samples)^2/2.
     block_length : int
@@ -210,7 +212,8 @@ class Estimate:
     samples : int
         Samples in the series.
     converged : bool
-        Whether the error has reached its plateau; if not it is a lower bound, and the series is too short.
+        Whether the error has reached its plateau. Of a series shorter than some 100 correlation times it comes out too
+        small in most cases, with a plateau or without.
 
     Examples
     --------
@@ -724,7 +727,7 @@ class Peak:
     mean : float
         Its mean.
     mean_error : float
-        Standard error of the mean.
+        Standard error of the mean, as if it were known which values belong to the peak: too small where peaks overlap.
     deviation : float
         Its standard deviation.
 
