@@ -13,7 +13,7 @@ const PLACES: usize = 121;
 /// The width at which the fraction of jammed runs falls through one half.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FractionCrossing {
-    /// The width, with intervals by profile likelihood; where the runs are separated the bracket that they leave.
+    /// The width, with intervals by profile likelihood; where the runs are separated from the bracket that they leave.
     pub width: Uncertain,
     /// Range of widths over which the fraction falls, 1/steepness, by maximum likelihood; 0 where the runs are
     /// separated.
@@ -123,12 +123,8 @@ impl Fractions {
             }
             let mut width = Uncertain::bracketed(value, lower, upper);
             // Few runs a width may part by chance, where the fraction falls less steeply.
-            let bracket = width.interval_95;
             let profile = self.profile(value, -log_likelihood, WIDE);
-            width.interval_95 = Interval::new(
-                profile.lower.min(bracket.lower),
-                profile.upper.max(bracket.upper),
-            );
+            width.interval_95 = width.interval_95.hull(profile);
             return Ok(found(width, 0.0, log_likelihood));
         }
         let undetermined = Error::undetermined(self.runs, 2);
@@ -172,8 +168,10 @@ impl Fractions {
 /// likelihood has no maximum: the width is then the middle of the bracket, the 68 per cent interval the middle 68 per cent
 /// of it, and the error its length over sqrt(12); with mixed runs at one width between, that width, with its neighbours as
 /// the bracket. The 95 per cent interval holds the bracket, and what the likelihood does not exclude: with one or two runs a
-/// width a fraction that falls less steeply. On made-up runs whose spread is 0.3 of the distance of the widths it covers the
-/// truth in 94 cases of 100 or more; at a spread as large as that, with one run a width, in 70 to 80. Sources: Cox & Snell, Analysis of Binary Data (1989), chapter 2; separation: Albert & Anderson,
+/// width a fraction that falls less steeply. On made-up runs, separated ones, with one, two and three runs a width it covers
+/// the truth in 96, 93 and 96 cases of 100 and the 68 per cent interval in 46, 75 and 87, where the spread is 0.3 of the
+/// distance of the widths; where it is that distance, with one and two, in 73 and 75, and in 26 and 54.
+/// Sources: Cox & Snell, Analysis of Binary Data (1989), chapter 2; separation: Albert & Anderson,
 /// Biometrika 71, 1 (1984).
 ///
 /// # Errors

@@ -233,6 +233,9 @@ impl Survival {
     }
 }
 
+/// Part of a variance that counts as none.
+const NEARLY_NONE: f64 = 0.1;
+
 /// Survival with Greenwood's variance of its logarithm and intervals of ln(-ln S).
 fn log_log(survival: f64, log_variance: f64, before: Uncertain) -> Uncertain {
     if survival <= 0.0 {
@@ -254,8 +257,9 @@ fn log_log(survival: f64, log_variance: f64, before: Uncertain) -> Uncertain {
 ///
 /// with the Kaplan-Meier curve S of n runs: without censoring before the horizon the sample variance of the cut-off
 /// times. The error of the mean is that of [`Survival::restricted_mean`]. Intervals of the variance are from the jackknife of
-/// its logarithm, with Student's distribution; its error is half of the narrow one. Where runs without one of them have no
-/// variance they are symmetric, from the jackknife of the variance itself. Source: Miller, Ann. Math. Stat. 39, 567 (1968).
+/// its logarithm, with Student's distribution, up to the largest variance of times below the horizon; its error is half of the
+/// narrow one. Where one run alone makes up nearly all of the variance they are symmetric, from the jackknife of the variance
+/// itself. Source: Miller, Ann. Math. Stat. 39, 567 (1968).
 ///
 /// # Errors
 /// [`Error::TooFewObserved`] below 3 transitions, [`Error::Horizon`], [`Error::NonFinite`], [`Error::Negative`],
@@ -282,14 +286,18 @@ pub fn restricted_moments(
     Ok(RestrictedMoments {
         horizon,
         mean: survival.restricted_mean(horizon)?,
-        variance: with_jackknife(variance_of(times), &without_one),
+        variance: with_jackknife(variance_of(times), &without_one, horizon),
     })
 }
 
-/// A variance with intervals from its values with one run left out.
-fn with_jackknife(variance: f64, without_one: &[f64]) -> Uncertain {
+/// A variance of times up to a horizon, with intervals from its values with one run left out.
+fn with_jackknife(variance: f64, without_one: &[f64], horizon: f64) -> Uncertain {
     let runs = without_one.len() as f64;
-    if variance <= 0.0 || without_one.iter().any(|&left| left <= 0.0) {
+    // Where one run makes up nearly all of it, the logarithm says how small the rest is, and nothing of the variance.
+    if without_one
+        .iter()
+        .any(|&left| left <= NEARLY_NONE * variance)
+    {
         return Uncertain::normal(variance, jackknife_error(without_one));
     }
     let pseudo = without_one
@@ -298,8 +306,13 @@ fn with_jackknife(variance: f64, without_one: &[f64]) -> Uncertain {
     let (mean, scatter) = mean_and_scatter(&pseudo.collect::<Vec<_>>());
     let error = (scatter / (runs * (runs - 1.0))).sqrt();
     let logarithm = Uncertain::student(mean, error, without_one.len() - 1);
+    let largest = 0.25 * horizon * horizon * runs / (runs - 1.0);
+    let interval = |of: Interval| {
+        let Interval { lower, upper } = of.map(libm::exp);
+        Interval::new(lower.min(variance), upper.min(largest).max(variance))
+    };
     let intervals = [logarithm.interval_68, logarithm.interval_95];
-    Uncertain::between(variance, intervals.map(|interval| interval.map(libm::exp)))
+    Uncertain::between(variance, intervals.map(interval))
 }
 
 #[cfg(test)]

@@ -48,6 +48,11 @@ impl Interval {
         Self { lower, upper }
     }
 
+    /// The shortest interval that holds both.
+    pub(crate) fn hull(&self, other: Self) -> Self {
+        Self::new(self.lower.min(other.lower), self.upper.max(other.upper))
+    }
+
     /// Whether a value lies in the interval, ends included.
     pub fn contains(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
@@ -108,7 +113,7 @@ impl Uncertain {
     }
 
     /// A number of which only two bounds are known, most likely `value`: its error is the standard deviation of a uniform
-    /// distribution between them, and the narrow interval holds 68.27 per cent of that. The bounds are the wide one.
+    /// distribution between them, and the narrow interval is 68.27 per cent of that as long, cut at the bounds. The bounds are the wide one.
     pub fn bracketed(value: f64, lower: f64, upper: f64) -> Self {
         let length = upper - lower;
         let half = 0.5 * (1.0 - 2.0 * NARROW_TAIL) * length;

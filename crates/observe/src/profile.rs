@@ -218,9 +218,9 @@ impl WaveFrameProfile {
         }
     }
 
-    /// Whether it can be a profile of `bins` bins and so many samples a period.
-    pub fn fits(&self, bins: usize, samples_per_period: u64) -> bool {
-        self.bins == bins.max(1) && self.blocks.fit(self.bins, samples_per_period)
+    /// Whether it can be a profile of `bins` bins, so many samples a period, and so many in all.
+    pub fn fits(&self, bins: usize, samples_per_period: u64, samples: u64) -> bool {
+        self.bins == bins.max(1) && self.blocks.fit(self.bins, samples_per_period, samples)
     }
 
     /// Adds the grains inside the tube, and its shape.
@@ -328,7 +328,7 @@ impl WaveFrameProfile {
 
     /// The profile over the last part of what was added, of whole periods, at least one; `wavelength` in d.
     ///
-    /// Errors are standard errors from up to ten groups of equally many periods, NaN where there is only one. What was added
+    /// Errors are standard errors from up to ten groups of about equally many periods, NaN where there is only one. What was added
     /// since the last whole period counts in the means, not in the errors.
     pub fn late(&self, fraction: f64, wavelength: f64) -> Vec<ProfileBin> {
         let (groups, whole) = self.blocks.late(fraction);

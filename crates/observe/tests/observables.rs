@@ -304,7 +304,9 @@ fn the_late_part_of_a_long_run_is_as_long_as_it_is_asked_for() {
             (of(wanted).0 - expected).abs() < 0.04 * part.min(1.0 - part),
             "{periods}"
         );
-        assert!(profile.fits(1, 1) && !profile.fits(1, 2) && !profile.fits(2, 1));
+        let samples = u64::from(periods);
+        assert!(profile.fits(1, 1, samples) && !profile.fits(1, 1, samples + 1));
+        assert!(!profile.fits(1, 2, samples) && !profile.fits(2, 1, samples));
     }
 }
 

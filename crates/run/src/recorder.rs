@@ -112,7 +112,7 @@ impl Recorder {
             && self.dispersion.fits(grains)
             && self.contact_forces.fits()
             && self.waves.fits(waves, samples_per_period)
-            && self.profile.fits(bins, samples_per_period)
+            && self.profile.fits(bins, samples_per_period, samples)
     }
 
     /// Takes a sample of the simulation.
@@ -326,5 +326,14 @@ mod tests {
         assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 250, 20), 1);
         assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 100, 1), 1);
         assert_eq!(samples_between(STEPS_BETWEEN_LOOKS, 1, 30), 101);
+    }
+    #[test]
+    fn a_run_that_starts_at_a_threshold_is_watched_upward() {
+        // 0.2 of 0.5 with rounding.
+        for start in [0.4, 0.4 + 1e-16, 0.4 - 1e-16, 0.399] {
+            assert_eq!(direction(start, 0.4), Direction::Upward, "{start}");
+        }
+        assert_eq!(direction(0.401, 0.4), Direction::Downward);
+        assert_eq!(direction(1.0, 1.0), Direction::Downward);
     }
 }

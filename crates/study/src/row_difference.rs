@@ -20,12 +20,18 @@ const ADDED: [&str; 7] = [
 ];
 /// Columns whose sums have been added up in another order since: programs may differ in their last digits.
 pub const RESUMMED: [&str; 1] = ["flow_rate_ratio_variance"];
-/// How the names of columns begin that are read off otherwise since, and what names of errors hold, which are estimated
+/// How the names of columns begin that older programs read off otherwise, and how the names of errors end, which they estimated
 /// otherwise.
-const REREAD: [&str; 14] = [
+const REREAD: [&str; 4] = [
     "contact_force_",
-    "narrow_",
     "front_",
+    "axial_dispersion",
+    "refill_efficiency",
+];
+const ERROR: &str = "_error";
+/// The same of averages from profiles, in runs of more periods than older programs kept apart.
+const FROM_PROFILES: [&str; 8] = [
+    "narrow_",
     "throat_",
     "belly_",
     "wall_normal_force",
@@ -33,14 +39,12 @@ const REREAD: [&str; 14] = [
     "wall_pressure",
     "wear_power",
     "wall_wear",
-    "axial_dispersion",
-    "axial_mixing",
-    "radial_mixing",
-    "refill_efficiency",
 ];
-const ERROR: &str = "_error";
-/// Revision whose rows, and those of later ones, are read off as they are now.
-const READ_SINCE: &str = "c5f5d23c";
+const KEPT_APART: f64 = 64.0;
+/// Revisions of these older programs, of which there are published rows.
+const OLDER: &str = "02cca9a5 09e123c9 22d78410 3e027db7 3ef2fbdf 46d2f6bc 5387f8e8 7054742a 738c4535 7a7ea524 \
+                     838dd934 8c796c31 986612dc 9a877dee a201c8d9 a9f9b863 aab4d0fb b61afc95 c9010838 d343008e \
+                     d37676b7 e727d128 e9316dd1 f0520a9b f3c3b457 f5678a2f fa5872ef fb932a73 ffb1ca34";
 /// Largest relative difference that the order of a sum makes there: a variance is a small difference of large numbers.
 const ROUNDING: f64 = 1e-9;
 
@@ -64,10 +68,13 @@ impl Row {
         let is_older = number(self, "late_periods").is_nan();
         let revision = |row: &Self| row.table().texts("revision").map(|it| it[0].clone()).ok();
         let is_of_other = revision(self) != revision(computed);
-        let is_read_so = revision(self).is_some_and(|it| it.starts_with(READ_SINCE));
+        let is_of_older = revision(self)
+            .is_some_and(|revision| OLDER.split(' ').any(|older| revision.starts_with(older)));
+        let is_long = number(self, "periods") > KEPT_APART;
         let is_reread = |name: &str| {
-            let begins = REREAD.iter().any(|begin| name.starts_with(begin));
-            !is_read_so && (begins || name.contains(ERROR))
+            let begins = |names: &[&str]| names.iter().any(|begin| name.starts_with(begin));
+            let from_long = is_long && begins(&FROM_PROFILES);
+            is_of_older && (begins(&REREAD) || from_long || name.contains(ERROR))
         };
         let later = |name: &str| {
             row_columns()
@@ -157,14 +164,21 @@ mod tests {
             ),
             [false]
         );
-        // What is read off otherwise since counts where the program of the row was an older one.
-        let row = with(&[]);
-        for column in ["contact_force_99", "wall_pressure", "flow_rate_ratio_error"] {
-            let reread = [other[0], (column, "0.25")];
-            assert_eq!(known(&row, &with(&reread)), [true], "{column}");
-            assert_eq!(known(&row, &with(&reread[1..])), [false], "{column}");
-            let of_now = with(&[("revision", "\"c5f5d23c0\"")]);
-            assert_eq!(known(&of_now, &with(&reread)), [false], "{column}");
+        // What is read off otherwise counts where the program of the row was an older one.
+        let of_older = ("revision", "\"3ef2fbdf0\"");
+        for (column, periods, is_known) in [
+            ("contact_force_99", "20.0", true),
+            ("flow_rate_ratio_error", "20.0", true),
+            ("wall_pressure", "65.0", true),
+            ("wall_pressure", "20.0", false),
+            ("flow_rate", "65.0", false),
+        ] {
+            let of = |settings: &[(&str, &'static str)]| {
+                with(&[settings, &[("periods", periods)]].concat())
+            };
+            let computed = of(&[other[0], (column, "0.25")]);
+            assert_eq!(known(&of(&[of_older]), &computed), [is_known], "{column}");
+            assert_eq!(known(&of(&[]), &computed), [false], "{column}");
         }
         let older = with(&[("late_periods", ""), ("belly_density", "")]);
         assert_eq!(older.differences(&row), []);

@@ -3,6 +3,42 @@ use crate::collapse::{Curve, CurvePoint};
 use crate::scaling::Scaling;
 use crate::tests::{assert_coverage, point, white_noise};
 
+/// The same abscissae for sizes of 1 to 8: on such data the exponent of the size came out as 0.73, not 1, with errors of 0.1.
+#[test]
+fn curves_of_unlike_length_are_doubted() {
+    let doubts = |largest: f64| {
+        let curve = |size: f64, seed: u64| {
+            let noise = white_noise(seed, 9);
+            let of = |k: usize| {
+                let x = -0.5 + 0.125 * k as f64;
+                let y = libm::pow(size, -0.5) / (1.0 + libm::exp(x * size));
+                point(x, y * (1.0 + 0.01 * noise[k]), 0.01 * y)
+            };
+            Curve {
+                parameter: size,
+                points: (0..9).map(of).collect(),
+            }
+        };
+        let sizes = [1.0, libm::sqrt(largest), largest];
+        let curves: Vec<Curve> = sizes
+            .into_iter()
+            .zip(1..)
+            .map(|(size, seed)| curve(4.0 * size, seed))
+            .collect();
+        let collapse = Collapse {
+            curves: &curves,
+            transform: &|parameters, index, size, point| {
+                Scaling::FiniteSize.apply(parameters, index, size, point)
+            },
+            least_overlap: 0.3,
+        };
+        let found = collapse.estimate(&[], &[0.5, 1.0, 0.0], &[0.1, 0.2, 0.05], 4, 0, None);
+        found.unwrap().doubts.concat()
+    };
+    assert!(doubts(8.0).contains("times as long"), "{}", doubts(8.0));
+    assert!(!doubts(2.0).contains("times as long"), "{}", doubts(2.0));
+}
+
 /// A kind of data whose parameters are known.
 struct Kind {
     name: &'static str,

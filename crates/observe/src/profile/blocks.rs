@@ -44,8 +44,9 @@ impl Blocks {
         }
     }
 
-    /// Whether these can be blocks of `bins` bins and so many samples a period.
-    pub(super) fn fit(&self, bins: usize, samples_per_period: u64) -> bool {
+    /// Whether these can be blocks of `bins` bins, so many samples a period, and so many in all.
+    pub(super) fn fit(&self, bins: usize, samples_per_period: u64, samples: u64) -> bool {
+        let mut each = self.blocks.iter().map(|block| block.samples);
         let has_bins = |block: &Block| block.sums.len() == bins;
         let of_periods = |block: &Block| {
             let periods = block.samples / self.period;
@@ -54,6 +55,7 @@ impl Blocks {
         let (whole, under_way) = self.whole();
         let lengths = whole.chunk_by(|one, next| one.samples == next.samples);
         self.period == samples_per_period.max(1)
+            && each.try_fold(0_u64, u64::checked_add) == Some(samples)
             && self.blocks.iter().all(has_bins)
             && whole.iter().all(of_periods)
             && under_way.is_none_or(|block| block.samples < self.period)
@@ -105,13 +107,13 @@ impl Blocks {
         });
     }
 
-    /// The last part of the whole periods in up to ten groups of equally many, and how many groups these are; a period that is
+    /// The last part of the whole periods in up to ten groups of about equally many, and how many groups these are; a period that is
     /// under way follows them as a group of its own.
     pub(super) fn late(&self, fraction: f64) -> (Vec<Vec<Sums>>, usize) {
         let (whole, under_way) = self.whole();
         let periods = whole.iter().map(|block| block.samples).sum::<u64>() / self.period;
         let wanted = match under_way {
-            // No less than the late part, with the period that is under way.
+            // With the period that is under way no less than the late part, but for blocks that reach beyond it.
             Some(block) => {
                 let part = block.samples as f64 / self.period as f64;
                 ((periods as f64 + part) * fraction - part).ceil()
@@ -135,6 +137,13 @@ impl Blocks {
                 Some(group) if group.samples < in_group => group.add(block),
                 _ => groups.push(block.clone()),
             }
+        }
+        // The rest: one that is much shorter than the others would count as much as they do.
+        if groups.len() > 1
+            && let Some(rest) = groups.pop_if(|last| 2 * last.samples < in_group)
+            && let Some(last) = groups.last_mut()
+        {
+            last.add(&rest);
         }
         let number = groups.len();
         let groups = groups.into_iter().chain(under_way.cloned());

@@ -58,7 +58,8 @@ pub fn published_in_words(all: &[PublishedRows], drawn: Option<&Drawn>) -> Optio
         0 => " to the bit".to_owned(),
         several => format!(
             " to the bit, in {several} of them but for what an older program read off otherwise, as the changelog says: errors, \
-             averages over the late part of long runs, forces of contacts, and last digits of {}",
+             averages over the late part of long runs, forces of contacts and in the front of the wave, dispersion, and last \
+             digits of {}",
             RESUMMED.join(", ")
         ),
     };

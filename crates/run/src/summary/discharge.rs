@@ -58,3 +58,25 @@ impl Discharge {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use peristalsis_configuration::Configuration;
+
+    /// A checker: the same pump had three refill efficiencies, by the instant at which it was stopped.
+    #[test]
+    fn the_volume_of_segments_is_that_of_a_period() {
+        let settings = "tube.waves=1 grains.number=5 drive.waveform=segments drive.width=0.6 drive.segments=3 \
+                        drive.duty=0.2 run.periods=1";
+        let settings: Vec<&str> = settings.split_whitespace().collect();
+        let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+        let mut run = Run::new(configuration).unwrap();
+        let first = clear_volume_of_wave(run.simulation());
+        while !run.is_complete() {
+            run.advance().unwrap();
+            let volume = clear_volume_of_wave(run.simulation());
+            assert!((volume / first - 1.0).abs() < 0.01, "{volume} {first}");
+        }
+    }
+}

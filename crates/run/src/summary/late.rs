@@ -308,9 +308,9 @@ pub(super) fn residence_time(late: &Late) -> Option<(f64, f64)> {
     })
 }
 
-/// Coefficient of axial dispersion, D = d var(z - <z>)/(2 dt), and its error \[d^2/t\]; NaN below two whole late periods.
+/// Coefficient of axial dispersion, D = d var(z - <z>)/(2 dt), and its error \[d^2/t\]; NaN without a whole late period.
 ///
-/// The variance is that of the displacements since an origin in the late part of the run.
+/// The variance is that of the displacements since an origin in the late part of the run, from one period after it on.
 pub(super) fn axial_dispersion(
     samples: &[Sample],
     late: &[Sample],
@@ -391,6 +391,26 @@ mod tests {
             assert_eq!(late.len(), number.min(3));
             assert!(late.measured(flow).1.is_nan());
         }
+    }
+
+    /// A checker: of 32 periods the rates came from the last three, as the origin at the start of the late part was left out.
+    #[test]
+    fn dispersion_counts_from_the_start_of_the_late_part() {
+        let settings = ["tube.waves=1", "drive.width=2.9", "run.periods=32"];
+        let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
+        let mut run = crate::Run::new(configuration).unwrap();
+        while !run.is_complete() {
+            run.advance().unwrap();
+        }
+        let (samples, late) = (run.recorder().samples(), run.recorder().late(0.25));
+        let found = axial_dispersion(samples, late, run.recorder().dispersion());
+        let rates = run
+            .recorder()
+            .dispersion()
+            .rates_from(samples[24 * 20 - 1].time);
+        assert_eq!((late.len(), rates.len()), (8 * 20, 7));
+        assert_eq!(found.0, mean(&rates));
+        assert!(found.1.is_finite());
     }
 
     #[test]

@@ -84,7 +84,7 @@ pub struct Summary {
     /// W/(2 pi) for the late mean work W of the wall or drive in a period, and its error: the torque of a shaft that makes one
     /// wave a turn \[m d^2/t^2\]; `None` of a static wave.
     pub wall_torque: Option<(f64, f64)>,
-    /// How the grains mixed; `None` below 20 grains, or of an open tube.
+    /// How the grains mixed; nothing is known below 20 grains, or of an open tube.
     pub mixed: MixedGrains,
     /// Where grains of several sizes gathered.
     pub segregated: SegregatedSizes,

@@ -248,24 +248,26 @@ fn told(
 /// How far the grains are mixed, once a period has passed.
 fn mixing(run: &Run, summary: &Summary) -> String {
     let mixed = summary.mixed;
-    let (Some(axial), Some(radial)) = (mixed.axial, mixed.radial) else {
-        return String::new();
-    };
-    let since = |time: Option<f64>| {
+    let since = |time: f64| {
         let rate = run.configuration().drive.strain_rate;
-        time.map(|time| match rate > 0.0 {
-            true => format!(" (half after {} periods)", tenths(time * rate)),
-            false => format!(" (half after t = {time:.1})"),
-        })
-        .unwrap_or_default()
+        match rate > 0.0 {
+            true => format!("half after {} periods", tenths(time * rate)),
+            false => format!("half after t = {time:.1}"),
+        }
     };
-    format!(
-        "\nmixing, 0 apart to 1 at random: {}{} along the tube, {}{} across it",
-        measured(axial),
-        since(mixed.axial_time),
-        measured(radial),
-        since(mixed.radial_time)
-    )
+    let ways = [
+        (mixed.axial, mixed.axial_time, "along the tube"),
+        (mixed.radial, mixed.radial_time, "across it"),
+    ];
+    let found = ways.map(|(late, time, way)| match (late, time.map(since)) {
+        (Some(late), Some(half)) => Some(format!("{} ({half}) {way}", measured(late))),
+        (Some(late), None) => Some(format!("{} {way}", measured(late))),
+        (None, half) => Some(format!("{} {way}", half?)),
+    });
+    match found.into_iter().flatten().collect::<Vec<_>>().as_slice() {
+        [] => String::new(),
+        found => format!("\nmixing, 0 apart to 1 at random: {}", found.join(", ")),
+    }
 }
 
 /// Where large grains gather, if not by chance.

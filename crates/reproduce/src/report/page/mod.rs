@@ -118,7 +118,7 @@ fn by_wall(report: &Report) -> Markup {
                 p {
                     "A wall is named by its spheres a ring and rings a wave. The source had one tube and does not say which: "
                     "a claim counts as reproduced where one wall or more reproduces it. "
-                    "† It would be open without one of the wall's strain rates, ‡ it would be the opposite."
+                    "† It would be open without one of the wall's strain rates (three then suffice), ‡ it would be the opposite."
                 }
                 div.scroll tabindex="0" role="region" aria-label="Verdict by wall" {
                     table.walls {
