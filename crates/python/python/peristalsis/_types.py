@@ -713,8 +713,8 @@ class Summary(_Rare):
     """its standard error [d/t]"""
     front_normal_force: float
     """part of wall_normal_force in the front of the wave: in the bins of the profile from that of its narrowest
-    place on (the last of equally narrow ones), up to that of the widest one ahead (the first of equally wide ones),
-    without it [m d/t^2]"""
+    place on (the last of equally narrow ones), up to that of the widest one ahead: without it, or with the first of
+    several that are equally wide [m d/t^2]"""
     front_normal_force_error: float
     """its standard error [m d/t^2]"""
     front_tangential_force: float

@@ -240,7 +240,7 @@ class FractionCrossing:
     Attributes
     ----------
     width : Uncertain
-        The width, with intervals by profile likelihood; where the runs are separated the bracket that they leave.
+        The width, with intervals by profile likelihood; where the runs are separated from the bracket that they leave.
     spread : float
         Range of widths over which the fraction falls, 1/steepness, by maximum likelihood; 0 where the runs are
         separated.
