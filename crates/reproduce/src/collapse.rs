@@ -317,8 +317,8 @@ pub(crate) fn distrust(draft: &mut Draft, found: &[(String, Collapsed)]) {
     let stretch = number(stretch.fold(1.0, f64::max), 1);
     if !walls.is_empty() {
         draft.finding.weaknesses.push(format!(
-            "Do not trust the best exponents on {}: errors were stretched by up to {stretch}, or a correction to scaling, or \
-             curves of unlike length, may matter.",
+            "Do not trust the best exponents on {}: errors were stretched by up to {stretch}, or corrections to scaling or unlike \
+             curves may matter.",
             match walls.len() == found.len() {
                 true => "any wall".to_owned(),
                 false => walls.join(", "),
