@@ -19,7 +19,11 @@ const ADDED: [&str; 7] = [
     "belly_",
 ];
 /// Columns whose sums have been added up in another order since: programs may differ in their last digits.
-pub const RESUMMED: [&str; 1] = ["flow_rate_ratio_variance"];
+pub const RESUMMED: [&str; 3] = [
+    "flow_rate_ratio_variance",
+    "wall_pressure",
+    "wall_pressure_largest",
+];
 /// How the names of columns begin that older programs read off otherwise, and how the names of errors end, which they estimated
 /// otherwise.
 const REREAD: [&str; 4] = [
