@@ -113,7 +113,8 @@ impl Uncertain {
     }
 
     /// A number of which only two bounds are known, most likely `value`: its error is the standard deviation of a uniform
-    /// distribution between them, and the narrow interval is 68.27 per cent of that as long, cut at the bounds. The bounds are the wide one.
+    /// distribution between them, and the narrow interval is 68.27 per cent of that as long, cut at the bounds. The bounds are
+    /// the wide one.
     pub fn bracketed(value: f64, lower: f64, upper: f64) -> Self {
         let length = upper - lower;
         let half = 0.5 * (1.0 - 2.0 * NARROW_TAIL) * length;

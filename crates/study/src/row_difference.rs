@@ -78,7 +78,7 @@ impl Row {
         let is_reread = |name: &str| {
             let begins = |names: &[&str]| names.iter().any(|begin| name.starts_with(begin));
             let from_long = is_long && begins(&FROM_PROFILES);
-            is_of_older && (begins(&REREAD) || from_long || name.contains(ERROR))
+            is_of_older && (begins(&REREAD) || from_long || name.ends_with(ERROR))
         };
         let later = |name: &str| {
             row_columns()

@@ -39,6 +39,11 @@ fn without_censoring_the_restricted_moments_are_those_of_the_sample() {
     assert!((found.mean.value - plain.mean).abs() < 1e-14);
     assert!((found.mean.error - plain.mean_error).abs() < 1e-14);
     assert!((found.variance.value - plain.variance).abs() < 1e-13);
+    // ln s^2 without one of them: pseudo-values of mean 2.7722 and error 1.8516. No variance of times below 9 is above 25.3125.
+    let logarithm = Uncertain::student(2.772_193_239, 1.851_621_887, 4);
+    let lower = libm::exp(logarithm.interval_68.lower);
+    assert!((found.variance.interval_68.lower - lower).abs() < 1e-8);
+    assert!((found.variance.interval_68.upper - 25.3125).abs() < 1e-12);
     let survival = Survival::new(&runs).unwrap();
     assert_eq!(survival.median().unwrap().value, 2.0);
     assert_eq!(survival.at(7.0), 0.0);
@@ -65,6 +70,12 @@ fn one_late_run_does_not_make_the_variance_endless() {
             upper <= 250.0 && variance.error < 40.0 && variance.error > 4.0,
             "{variance:?}"
         );
+        // One run makes up nearly all of it.
+        if apart < 0.5 {
+            let times: Vec<f64> = (0..10).map(time).collect();
+            let plain = crate::ensemble::moments(&times).unwrap();
+            assert!((variance.error - plain.variance_error).abs() < 1e-9);
+        }
     }
     // Two values, five runs each: all is known alike, and the interval holds the variance.
     let runs = [1.1, 3.3].repeat(5);
