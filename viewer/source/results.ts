@@ -137,6 +137,12 @@ export class Results {
     return this.number("time", row) / this.number("periods", row);
   }
 
+  /** Time up to which a row's run was watched; tables of older programs say only how long it was. */
+  private watched(row: number): number {
+    const watched = this.number("watched", row);
+    return Number.isNaN(watched) ? this.number("time", row) : watched;
+  }
+
   /** Rows in which all these columns have these values. */
   where(rows: number[], fixed: Map<string, Value>): number[] {
     return rows.filter((row) => [...fixed].every(([name, value]) => this.value(name, row) === value));
@@ -164,7 +170,7 @@ export class Results {
     // A run that ended before its transition says that its time is longer than it went.
     const ended = rows.filter((row) => isTime && Number.isNaN(this.number(quantity, row)));
     const values = rows
-      .map((row) => (ended.includes(row) ? this.number("time", row) : this.number(quantity, row)))
+      .map((row) => (ended.includes(row) ? this.watched(row) : this.number(quantity, row)))
       .filter(Number.isFinite);
     const number = values.length;
     const mean = values.reduce((sum, value) => sum + value, 0) / number;

@@ -96,7 +96,7 @@ pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};
 pub use survival::{RestrictedMoments, Survival, SurvivalStep, restricted_moments};
 pub use transition::{
-    CONFIRMATION_PERIODS, Direction, Transition, TransitionDetector, transition_time,
+    CONFIRMATION_PERIODS, Direction, Transition, TransitionDetector, transition_time, watched,
 };
 pub use truncation::{StationaryMean, stationary_mean};
 pub use uncertain::{Interval, Uncertain};

@@ -6,6 +6,14 @@ use serde::{Deserialize, Serialize};
 /// Period averages in a row that must lie beyond the threshold before a crossing counts.
 pub const CONFIRMATION_PERIODS: u32 = 3;
 
+/// Time up to which a transition is found in a run of so many whole periods, in the unit of the period duration T: its last
+/// crossing that can be confirmed ends in the middle of the third period from the end.
+///
+/// `watched = (periods - 5/2) T`, 0 at least
+pub fn watched(periods: u64, period_duration: f64) -> f64 {
+    (periods as f64 - (f64::from(CONFIRMATION_PERIODS) - 0.5)).max(0.0) * period_duration
+}
+
 /// The way in which the flow rate crosses the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -46,13 +54,13 @@ pub enum Transition {
     },
     /// The run ended before a transition was complete: a lower bound, which an estimator must use and not drop.
     Censored {
-        /// End of the last whole period, in the unit of the period duration; 0 for a run without a whole period.
+        /// Time up to which a transition would have been found ([`watched`]), in the unit of the period duration.
         time: f64,
     },
 }
 
 impl Transition {
-    /// Outcome of a run of whose period nothing is known: the time of its transition, or of its end without one.
+    /// Outcome of a run of whose period nothing is known: the time of its transition, or up to which it was watched without one.
     pub fn new(time: f64, observed: bool) -> Self {
         match observed {
             true => Self::At { time, period: 0 },
@@ -60,7 +68,7 @@ impl Transition {
         }
     }
 
-    /// Time of the transition or, where none was observed, of the end; and whether one was.
+    /// Time of the transition or, where none was observed, up to which the run was watched; and whether one was.
     pub fn time(self) -> (f64, bool) {
         match self {
             Self::At { time, .. } => (time, true),
@@ -95,8 +103,8 @@ struct Crossing {
 /// the straight line between the middles of the two periods. Before the first period stands the initial state, m = 0
 /// at rest or 1 jammed, at t = 0, so that a run that is beyond the threshold in its first period has 0 <= tau < T/2:
 /// 0 where the initial state is not short of the threshold either.
-/// Until a crossing is confirmed the run counts as censored at the end of its last period, though the crossing, once
-/// confirmed, lies up to three periods before that time.
+/// A run of n periods without one is censored at (n - 5/2) T ([`watched`]): a crossing before would have been confirmed, and
+/// one after, if it is under way, is not yet.
 ///
 /// ```
 /// use peristalsis_analysis::{Direction, Transition, TransitionDetector};
@@ -104,7 +112,7 @@ struct Crossing {
 /// for average in [0.1, 0.4, 0.8, 0.9] {
 ///     detector.push(average)?;
 /// }
-/// assert_eq!(detector.outcome(), Transition::Censored { time: 40.0 });
+/// assert_eq!(detector.outcome(), Transition::Censored { time: 15.0 });
 /// // A quarter of the way from the middle of period 1 to the middle of period 2.
 /// assert_eq!(detector.push(0.9)?, Transition::At { time: 17.5, period: 2 });
 /// # Ok::<(), peristalsis_analysis::Error>(())
@@ -195,9 +203,14 @@ impl TransitionDetector {
                 Transition::At { time, period }
             }
             _ => Transition::Censored {
-                time: self.periods as f64 * self.period_duration,
+                time: self.watched(),
             },
         }
+    }
+
+    /// Time up to which a transition is found in the periods so far: [`watched`].
+    pub fn watched(&self) -> f64 {
+        watched(self.periods, self.period_duration)
     }
 
     /// Whether the transition has been found, so that a run need not go on for its sake.
@@ -221,7 +234,7 @@ impl TransitionDetector {
 
 /// Transition time of a finished run from its period averages; [`TransitionDetector`] states the definition.
 ///
-/// `averages`: those of all whole periods from the start of the run; without any the run is censored at time 0.
+/// `averages`: those of all whole periods from the start of the run; with two or fewer the run is censored at time 0.
 ///
 /// # Errors
 /// [`Error::NonFinite`] with the period at fault, [`Error::Threshold`], [`Error::PeriodDuration`].
@@ -292,16 +305,16 @@ mod tests {
 
     #[test]
     fn the_threshold_itself_is_not_beyond_the_threshold() {
-        assert_eq!(upward(&[0.5; 8]), Transition::Censored { time: 16.0 });
-        assert_eq!(downward(&[0.5; 8]), Transition::Censored { time: 16.0 });
+        assert_eq!(upward(&[0.5; 8]), Transition::Censored { time: 11.0 });
+        assert_eq!(downward(&[0.5; 8]), Transition::Censored { time: 11.0 });
     }
 
     #[test]
-    fn runs_that_end_early_are_censored_at_their_end() {
+    fn runs_that_end_early_are_censored_before_a_crossing_under_way() {
         assert_eq!(upward(&[]), Transition::Censored { time: 0.0 });
-        assert_eq!(upward(&[0.1; 4]), Transition::Censored { time: 8.0 });
-        // A crossing with two of its three periods.
-        assert_eq!(upward(&[0.1, 0.9, 0.9]), Transition::Censored { time: 6.0 });
+        assert_eq!(upward(&[0.1; 4]), Transition::Censored { time: 3.0 });
+        // A crossing at 1.5 T with two of its three periods.
+        assert_eq!(upward(&[0.1, 0.9, 0.9]), Transition::Censored { time: 1.0 });
         assert_eq!(upward(&[0.1, 0.9, 0.9]).observed(), None);
     }
 
@@ -367,7 +380,7 @@ mod tests {
             match by_definition(&means, direction, threshold) {
                 None => prop_assert_eq!(
                     batch,
-                    Transition::Censored { time: 3.0 * means.len() as f64 }
+                    Transition::Censored { time: 3.0 * (means.len() as f64 - 2.5).max(0.0) }
                 ),
                 Some(first) => {
                     let Transition::At { time, period } = batch else {
@@ -376,6 +389,10 @@ mod tests {
                     prop_assert_eq!(period, first as u64);
                     let middle = (first as f64 + 0.5) * 3.0;
                     prop_assert!(time <= middle && time >= (middle - 3.0).max(0.0));
+                    // Where it is confirmed just now, it is before the time up to which the run was watched; a period
+                    // earlier it was after that.
+                    prop_assert!(time <= watched(first as u64 + 3, 3.0));
+                    prop_assert!(time >= watched(first as u64 + 2, 3.0));
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use peristalsis_analysis::{Transition, Uncertain, mean_and_error};
+use peristalsis_analysis::{Transition, Uncertain, mean_and_error, watched};
 use peristalsis_formats::{FormatError, Table, Values};
 use peristalsis_physics::contact::LinearSpringDashpot;
 use peristalsis_run::THRESHOLDS;
@@ -301,7 +301,7 @@ impl<'a> Row<'a> {
         self.number("escaped") / self.number("grains").max(1.0)
     }
 
-    /// The transition at the threshold of the study; censored at the end of the run where there was none.
+    /// The transition at the threshold of the study; censored where it could no longer have been found where there was none.
     pub(crate) fn transition(&self) -> Transition {
         self.transition_of(self.number("transition_time"))
     }
@@ -314,7 +314,11 @@ impl<'a> Row<'a> {
 
     fn transition_of(&self, time: f64) -> Transition {
         if time.is_nan() {
-            return Transition::Censored { time: self.time() };
+            let (strain_rate, end) = (self.strain_rate(), self.time());
+            // Of whole periods, which rounding may have left short.
+            let periods = (end * strain_rate + 1e-6) as u64;
+            let time = watched(periods, 1.0 / strain_rate);
+            return Transition::Censored { time };
         }
         Transition::At {
             time,

@@ -246,6 +246,11 @@ impl Recorder {
         self.transition()?.observed()
     }
 
+    /// Time up to which a transition is found \[t\]: [`peristalsis_analysis::watched`].
+    pub fn watched(&self) -> Option<f64> {
+        Some(self.detector.as_ref()?.watched())
+    }
+
     /// Time of the transition \[t\] at each of [`THRESHOLDS`], where it has been found.
     pub fn transition_times(&self) -> [Option<f64>; THRESHOLDS.len()] {
         core::array::from_fn(|place| self.ladder.get(place)?.outcome().observed())

@@ -22,7 +22,7 @@ use crate::{PHYSICS_VERSION, RunError};
 pub use self::mark::Mark;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 18;
+const STATE_LAYOUT: u32 = 19;
 /// Steps between two updates of the orientations of grains. A contact takes tens of steps.
 const STEPS_PER_TURN: u64 = 10;
 

@@ -2,10 +2,13 @@
 
 /// Most bins of the distribution.
 const BINS: usize = 256;
+/// Most blocks of times that came one after another.
+const BLOCKS: usize = 128;
 
-/// Transit times: number, mean and variance, and how they are distributed over bins of equal width.
+/// Transit times: number, mean and variance, how they are distributed over bins of equal width, and their means over blocks
+/// of times that came one after another.
 ///
-/// The bins are few whatever the run: where a time lies beyond them, every two become one, twice as wide.
+/// Bins and blocks are few whatever the run: where they do not suffice, every two become one, twice as wide or long.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TransitTimes {
     number: u64,
@@ -15,6 +18,10 @@ pub struct TransitTimes {
     /// Width of a bin \[t\].
     width: f64,
     bins: Vec<u64>,
+    /// Times in a block.
+    block_length: u64,
+    /// Sums of the blocks; the last block may not be full \[t\].
+    blocks: Vec<f64>,
 }
 
 impl TransitTimes {
@@ -26,16 +33,34 @@ impl TransitTimes {
             squares: 0.0,
             width,
             bins: Vec::new(),
+            block_length: 1,
+            blocks: Vec::new(),
         }
     }
 
     /// Whether a run can have come to these times, read from a file.
     pub(crate) fn fits(&self) -> bool {
-        self.width > 0.0 && self.bins.len() <= BINS && self.bins.iter().sum::<u64>() == self.number
+        self.width > 0.0
+            && self.bins.len() <= BINS
+            && self.bins.iter().sum::<u64>() == self.number
+            && self.blocks.len() <= BLOCKS
+            && self.block_length.is_power_of_two()
+            && self.number.div_ceil(self.block_length) == self.blocks.len() as u64
     }
 
     /// Adds a time \[t\].
     pub(crate) fn add(&mut self, time: f64) {
+        if self.number.is_multiple_of(self.block_length) {
+            if self.blocks.len() == BLOCKS {
+                self.block_length *= 2;
+                let pairs = self.blocks.chunks(2).map(|pair| pair.iter().sum());
+                self.blocks = pairs.collect();
+            }
+            self.blocks.push(0.0);
+        }
+        if let Some(last) = self.blocks.last_mut() {
+            *last += time;
+        }
         self.number += 1;
         let off = time - self.mean;
         self.mean += off / self.number as f64;
@@ -74,6 +99,14 @@ impl TransitTimes {
         }
     }
 
+    /// Means over blocks of equally many times that came one after another, up to 128 blocks; one that is not full is left
+    /// out \[t\].
+    pub fn block_means(&self) -> Vec<f64> {
+        let whole = (self.number / self.block_length) as usize;
+        let means = self.blocks[..whole].iter();
+        means.map(|sum| sum / self.block_length as f64).collect()
+    }
+
     /// Width of a bin \[t\], and the number of times in each from 0 on.
     pub fn distribution(&self) -> (f64, &[u64]) {
         (self.width, &self.bins)
@@ -100,5 +133,9 @@ mod tests {
         assert_eq!((width, bins.len()), (16.0, 157));
         assert!(bins[..156].iter().all(|&bin| bin == 64));
         assert_eq!(bins.iter().sum::<u64>(), 10_000);
+        // 78 whole blocks of 128, and the first of them in the middle of 0 to 127.
+        let means = found.block_means();
+        assert_eq!((means.len(), means[0]), (78, 0.25 * 63.5));
+        assert_eq!(means[77], 0.25 * (77.0 * 128.0 + 63.5));
     }
 }

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use peristalsis_observe::clear_volume_of_wave;
 
-use super::late::{Late, frequency};
+use super::late::{Late, error_of_few, frequency};
 use crate::run::Run;
 
 /// The flow through an open tube: late means, each with its error from block averages. Units: d, m, t.
@@ -23,7 +23,7 @@ pub struct Discharge {
     pub leaked: f64,
     /// Grains that have gone from the inlet to the outlet in the whole run.
     pub passed: u64,
-    /// Mean transit time of these grains, and its error; NaN of too few.
+    /// Mean transit time of these grains, and its error from blocks of grains that came one after another; NaN of too few.
     pub transit_time: (f64, f64),
     /// Variance of the transit time.
     pub transit_time_variance: f64,
@@ -52,7 +52,7 @@ impl Discharge {
             discharged: late.last().map_or(0.0, |sample| sample.discharged),
             leaked: ends.passages().leaked.mass,
             passed,
-            transit_time: (times.mean(), (variance / passed as f64).sqrt()),
+            transit_time: (times.mean(), error_of_few(&times.block_means())),
             transit_time_variance: variance,
             refill_efficiency,
         })

@@ -63,9 +63,9 @@ impl Late {
     /// Standard error of the mean of a number of each sample.
     pub(super) fn error_of(&self, values: &[f64]) -> f64 {
         let averages: Vec<f64> = values.chunks(self.block).map(super::mean).collect();
-        match averages.len() {
-            number @ 2..4 if self.block > 1 => (variance(&averages) / number as f64).sqrt(),
-            _ => error_of(averages.into_iter()),
+        match self.block {
+            1 => error_of(averages.into_iter()),
+            _ => error_of_few(&averages),
         }
     }
 
@@ -97,6 +97,14 @@ fn pulses(configuration: &Configuration) -> bool {
 pub(super) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
     let series: Vec<f64> = series.collect();
     mean_with_error(&series).map_or(f64::NAN, |estimate| estimate.error)
+}
+
+/// The same of averages, of two at least.
+pub(super) fn error_of_few(averages: &[f64]) -> f64 {
+    match averages.len() {
+        number @ 2..4 => (variance(averages) / number as f64).sqrt(),
+        _ => error_of(averages.iter().copied()),
+    }
 }
 
 /// J/Jmax of each late sample, of the grains inside and of all.

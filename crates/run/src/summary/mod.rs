@@ -59,6 +59,8 @@ pub struct Summary {
     pub flow_rate_ratio: (f64, f64),
     /// tau \[t\]; `None` where the run ended before a transition.
     pub transition_time: Option<f64>,
+    /// Time up to which a transition is found \[t\]; `None` where none can be told.
+    pub watched: Option<f64>,
     /// tau \[t\] at each of [`THRESHOLDS`].
     transition_times: [Option<f64>; THRESHOLDS.len()],
     /// J/Jmax of a Newtonian fluid in this tube without load: phi = b/a, and phi = b/(a - d_w/2) of the clear bore.
@@ -163,6 +165,7 @@ impl Summary {
             late_ratios: ratios,
             flow_rate_ratio_raw: mean(&raw_ratios),
             transition_time: recorder.transition_time(),
+            watched: recorder.watched(),
             transition_times: recorder.transition_times(),
             newtonian: newtonian_reference(configuration),
             escaped: samples.last().map_or(0, escaped),

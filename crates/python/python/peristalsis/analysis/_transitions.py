@@ -26,7 +26,7 @@ class TransitionTime:
     Attributes
     ----------
     time : float
-        tau, or the end of the run.
+        tau, or the time up to which the run was watched: 2.5 periods before its end, for a later crossing is not confirmed.
     observed : bool
         Whether there was a transition.
 
