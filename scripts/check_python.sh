@@ -22,7 +22,7 @@ done
 step "the source"
 "$environment/bin/maturin" sdist --out target/sdist
 # What the program holds from outside of its crates.
-for file in studies/quick/length.toml studies/length.toml THIRD-PARTY.txt; do
+for file in studies/quick.toml studies/length.toml THIRD-PARTY.txt; do
     tar -tzf target/sdist/peristalsis-*.tar.gz | grep "/$file$" > /dev/null || { echo "the source lacks $file"; exit 1; }
 done
 

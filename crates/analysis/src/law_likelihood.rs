@@ -115,6 +115,17 @@ impl LawLikelihood {
         Regression::new(x, &self.groups[..below], &likelihoods[..below])
     }
 
+    /// Difference of the largest and the least covariate of the law, of the widths below the best w_c.
+    fn covariates_apart(&self, best: &Largest) -> f64 {
+        let critical = self.range.critical(best.ln_distance);
+        let below = &self.places[..self.below(critical)];
+        let covariates = below.iter().map(|&it| self.law.covariate(it, critical));
+        let (least, largest) = covariates.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+            (a.min(x), b.max(x))
+        });
+        largest - least
+    }
+
     /// Best w_c at one shape; `value` is minus the log-likelihood.
     fn best_distance(&self, ln_shape: f64) -> Option<Minimum> {
         let likelihoods = self.at_shape(ln_shape);
@@ -221,7 +232,9 @@ impl LawLikelihood {
             });
             least.value
         };
-        let step = first_step * best.exponent.abs().max(1e-3);
+        // An exponent near 0 may have any sign: by its size, or by what tells the widths apart under the law.
+        let apart = self.covariates_apart(best);
+        let step = first_step * best.exponent.abs().max(1e-3 / apart);
         let limits = [best.exponent - 1e3 * step, best.exponent + 1e3 * step];
         let intervals = [NARROW, WIDE].map(|deviations| {
             let outside = |exponent: f64| excess(at_exponent(exponent), deviations);

@@ -477,7 +477,7 @@ impl Configuration {
     }
 
     /// Velocity along the wave that the initial state has of itself, in a wave of a speed \[d t^-1\].
-    pub(crate) fn natural_axial_velocity(&self, wave_speed: f64) -> f64 {
+    pub fn natural_axial_velocity(&self, wave_speed: f64) -> f64 {
         match self.initial.state {
             InitialState::Rest | InitialState::Settled | InitialState::Placed => 0.0,
             InitialState::Jammed => wave_speed,

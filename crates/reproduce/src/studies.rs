@@ -1,6 +1,9 @@
 //! The study files behind the claims, as they stand in `studies/` of this repository.
 
+use std::borrow::Cow;
+
 use peristalsis_study::{Specification, StudyError};
+use toml::{Table, Value};
 
 /// The size of a design, or of a textbook case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,24 +39,25 @@ pub struct StudyFile {
     /// Whether figures of claims need more than the rows: time series, profile, flow of the waves or spheres of the first
     /// replicate of each point. Where only its row is there, as it was imported, that run is computed again.
     pub needs_products: bool,
-    quick: &'static str,
     full: &'static str,
+    quick_designs: &'static str,
 }
 
 impl StudyFile {
-    /// A study from the texts of its two files; `path` is that of the full one.
+    /// A study from the text of its full file, and from a text in which the table of its name has what the quick design has in
+    /// place of the full one; without one both are the same.
     pub const fn new(
         name: &'static str,
         path: &'static str,
-        quick: &'static str,
         full: &'static str,
+        quick_designs: &'static str,
     ) -> Self {
         Self {
             name,
             path,
             needs_products: false,
-            quick,
             full,
+            quick_designs,
         }
     }
 
@@ -67,8 +71,25 @@ impl StudyFile {
     }
 
     /// The text of the study file.
-    pub fn text(&self, size: Size) -> &'static str {
-        size.choose(self.quick, self.full)
+    pub fn text(&self, size: Size) -> Cow<'static, str> {
+        match size {
+            Size::Full => Cow::Borrowed(self.full),
+            // A file that is no TOML is refused where it is read.
+            Size::Quick => self
+                .quick()
+                .map_or(Cow::Borrowed(self.full), |design| design.to_string().into()),
+        }
+    }
+
+    /// The quick design, where it is another than the full one.
+    fn quick(&self) -> Option<Table> {
+        let mut designs: Table = self.quick_designs.parse().ok()?;
+        let Value::Table(changes) = designs.remove(self.name)? else {
+            return None;
+        };
+        let mut design = self.full.parse().ok()?;
+        change(&mut design, changes);
+        Some(design)
     }
 
     /// What the study file says.
@@ -76,7 +97,7 @@ impl StudyFile {
     /// # Errors
     /// [`StudyError`] where the file is wrong.
     pub fn specification(&self, size: Size) -> Result<Specification, StudyError> {
-        Specification::alone(self.path, self.text(size))
+        Specification::alone(self.path, &self.text(size))
     }
 
     /// The study of this name.
@@ -85,14 +106,33 @@ impl StudyFile {
     }
 }
 
-/// Both files of a study by its name.
+/// Puts values in the place of those of a table; tables within it, and lists of tables, are changed in their turn.
+fn change(design: &mut Table, changes: Table) {
+    for (key, to) in changes {
+        match (design.get_mut(&key), to) {
+            (Some(Value::Table(table)), Value::Table(changes)) => change(table, changes),
+            (Some(Value::Array(tables)), Value::Array(changes))
+                if tables.iter().all(Value::is_table) =>
+            {
+                for (table, changes) in tables.iter_mut().zip(changes) {
+                    if let (Value::Table(table), Value::Table(changes)) = (table, changes) {
+                        change(table, changes);
+                    }
+                }
+            }
+            (_, to) => drop(design.insert(key, to)),
+        }
+    }
+}
+
+/// A study by its name.
 macro_rules! study {
     ($name:literal) => {
         StudyFile::new(
             $name,
             concat!("studies/", $name, ".toml"),
-            include_str!(concat!("../../../studies/quick/", $name, ".toml")),
             include_str!(concat!("../../../studies/", $name, ".toml")),
+            include_str!("../../../studies/quick.toml"),
         )
     };
 }

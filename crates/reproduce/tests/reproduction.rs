@@ -36,14 +36,14 @@ const STUDIES: [StudyFile; 2] = [
     StudyFile::new(
         "long",
         "studies/long.toml",
-        study!("long", 1, 40),
         study!("long", 3, 40),
+        "[long]\nreplicates = 1",
     ),
     StudyFile::new(
         "short",
         "studies/short.toml",
-        study!("short", 1, 4),
         study!("short", 2, 4),
+        "[short]\nreplicates = 1",
     ),
 ];
 

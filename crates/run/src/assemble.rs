@@ -158,7 +158,7 @@ pub(crate) fn place(
     bodies.velocity = velocities;
     wall.append_spheres(&mut bodies);
     let simulation = Simulation::new(bodies, wall, parameters(configuration));
-    check_places(&simulation)?;
+    check_places(&simulation, configuration.tube.arrangement.has_spheres())?;
     let waiting = waiting(
         &packing(configuration, configuration.heading()),
         configuration,
@@ -166,8 +166,8 @@ pub(crate) fn place(
     opened(simulation, configuration, &waiting)
 }
 
-/// Refuses grains outside the tube, and those that share most of their place with another sphere.
-fn check_places(simulation: &Simulation) -> Result<(), RunError> {
+/// Refuses grains outside the tube, and those that share most of their place with another sphere; a smooth wall has none.
+fn check_places(simulation: &Simulation, wall_has_spheres: bool) -> Result<(), RunError> {
     let refused = |reason: String| Err(RunError::Placement { reason });
     let (bodies, shape) = (simulation.bodies(), TubeShape::of(simulation));
     for (grain, position) in bodies.position[..bodies.grains].iter().enumerate() {
@@ -190,7 +190,10 @@ fn check_places(simulation: &Simulation) -> Result<(), RunError> {
     } in simulation.touching()
     {
         let diameter = |sphere: usize| bodies.diameter.get(sphere).copied();
-        let of_wall = simulation.wall().sphere_diameter();
+        let of_wall = match wall_has_spheres {
+            true => simulation.wall().sphere_diameter(),
+            false => f64::INFINITY,
+        };
         let [one, other] = [first, second].map(|sphere| diameter(sphere).unwrap_or(of_wall));
         if first < bodies.grains && overlap > 0.5 * one.min(other) {
             let partner = match second < bodies.grains {

@@ -2,15 +2,19 @@
 
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_observe::{MOST_ROWS, Sample, WaveFlow};
+use peristalsis_physics::wall::Arrangement;
 
 use crate::RunError;
 
 /// Bytes of the program itself with its figures.
 const BYTES_OF_PROGRAM: f64 = 4e7;
-/// Bytes of a frictionless grain in a prescribed tube, at most: some 450 are measured (BENCHMARKS.md).
-const BYTES_OF_GRAIN: f64 = 800.0;
+/// Bytes of a frictionless grain in a prescribed tube, at most: some 450 are measured (BENCHMARKS.md), 960 of a wide dense one.
+const BYTES_OF_GRAIN: f64 = 1200.0;
 /// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered, at most: 1,200 to 2,100 are measured.
 const BYTES_WITH_CONTACTS: f64 = 3000.0;
+
+/// Bytes of a sphere of a prescribed wall, at most, where each has a place of its own: some 90 are measured.
+const BYTES_OF_PLACE: f64 = 120.0;
 
 /// Grains, and spheres of an elastic wall.
 pub(crate) fn moving_spheres(configuration: &Configuration) -> u64 {
@@ -33,7 +37,11 @@ pub(crate) fn memory(configuration: &Configuration) -> f64 {
     } else {
         BYTES_OF_GRAIN
     };
+    let tube = &configuration.tube;
+    let has_places = tube.arrangement.is_drawn() || tube.arrangement == Arrangement::File;
+    let places = if has_places { tube.wall_spheres() } else { 0 };
     BYTES_OF_PROGRAM
+        + BYTES_OF_PLACE * places as f64
         + of_sphere * moving_spheres(configuration) as f64
         + (size_of::<Sample>() as f64) * samples.min(MOST_ROWS as f64)
         + (2 * size_of::<WaveFlow>()) as f64 * rows_of_waves

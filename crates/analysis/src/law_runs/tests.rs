@@ -124,3 +124,34 @@ fn what_does_not_determine_a_law_is_refused() {
     );
     assert_eq!(equal, Err(Error::NoScatter { observed: 3 }));
 }
+
+/// A numerical auditor: in metres the intervals of a barrier's height were others, and with widths of 1e-6 nonsense.
+#[test]
+fn the_unit_of_the_width_changes_no_interval() {
+    let (width, transitions) = runs(4, 12, 300.0, exponential);
+    for law in [Law::Exponential, Law::Barrier { power: 3.0 }, Law::Power] {
+        let fit = |unit: f64| {
+            let width: Vec<f64> = width.iter().map(|width| width * unit).collect();
+            fit_law_to_runs(law, Family::Exponential, &width, &transitions).unwrap()
+        };
+        let plain = fit(1.0).exponent;
+        for unit in [2e-3_f64, 1e-6, 1e6] {
+            let per_exponent = match law {
+                Law::Exponential => 1.0 / unit,
+                Law::Barrier { power } => unit.powf(power),
+                Law::Power => 1.0,
+            };
+            let scaled = fit(unit).exponent;
+            let is_near = |one: f64, other: f64| {
+                one == other || (one / per_exponent / other - 1.0).abs() < 1e-3
+            };
+            assert!(is_near(scaled.error, plain.error), "{law:?} {unit}");
+            for side in [
+                |it: &Uncertain| it.interval_95.lower,
+                |it: &Uncertain| it.interval_95.upper,
+            ] {
+                assert!(is_near(side(&scaled), side(&plain)), "{law:?} {unit}");
+            }
+        }
+    }
+}

@@ -19,17 +19,13 @@ keys = ["drive.strain_rate", "drive.width"]
 rows = [[0.05, 2.545], [0.05, 2.715], [0.1, 2.445], [0.1, 2.615], [0.2, 2.225], [0.2, 2.395]]
 "#;
 
-const FINE: StudyFile = StudyFile::new(
-    "divergence-fine",
-    "studies/divergence-fine.toml",
-    STUDY,
-    STUDY,
-);
+const FINE: StudyFile =
+    StudyFile::new("divergence-fine", "studies/divergence-fine.toml", STUDY, "");
 const COARSE: StudyFile = StudyFile::new(
     "divergence-coarse",
     "studies/divergence-coarse.toml",
     STUDY,
-    STUDY,
+    "",
 );
 
 /// A claim of the source that needs studies.

@@ -102,7 +102,7 @@ impl RunQuantity {
 pub(super) const QUANTITIES: &[RunQuantity] = &[
     setting("seed", "1", "seed of the random numbers", Whole(|c| c.run.seed)),
     setting("initial_state", "", "how the grains stood at t = 0", Text(|c| word(c.initial.state))).only_in_rows(),
-    result("status", "", "complete, or settled: ended early, after its transition", Text(|s| word(s.status))),
+    result("status", "", "complete; settled: ended early, after its transition; of a run, not of a row: interrupted, or diverged", Text(|s| word(s.status))),
     setting("width", "d", "w = 2 (a - b); missing under stress control", Optional(|c| c.drive.own(Parameter::Width))).only_in_rows().labelled("width w"),
     setting("force_amplitude", "m d/t^2", "f^P; missing under strain control", Optional(|c| c.drive.own(Parameter::ForceAmplitude))).only_in_rows().labelled("force amplitude f"),
     setting("strain_rate", "1/t", "c/lambda", Real(|c| c.drive.strain_rate)).only_in_rows().labelled("strain rate ε̇"),

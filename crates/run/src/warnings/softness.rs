@@ -150,29 +150,42 @@ pub(super) fn scaled_with(
 ) -> String {
     let (mut keys, mut rates) = (Vec::new(), Vec::new());
     if configuration.body != Body::default() {
-        keys.push("body.gravity, unless units.acceleration gives it");
+        keys.push("body.gravity (unless units.acceleration gives it)");
     }
     if configuration.drive.body_force != 0.0 {
         keys.push("drive.body_force");
     }
     if let Control::Stress { .. } = configuration.drive.control {
-        keys.extend([
-            "drive.force_amplitude",
-            "wall.spring_stiffness",
-            "the tethers of wall.keep",
-        ]);
+        keys.push("drive.force_amplitude");
+    }
+    let is_led = |parameter| configuration.drive.schedule(parameter).is_some();
+    if is_led(ScheduledParameter::ForceAmplitude) {
+        keys.push("force amplitudes of drive.schedule");
+    }
+    if let Some(wall) = configuration.wall.elastic {
+        keys.extend(["wall.spring_stiffness", "the tethers of wall.keep"]);
+        rates.extend((wall.drag != 0.0).then_some("wall.drag"));
+        rates.extend((wall.spring_damping != 0.0).then_some("wall.spring_damping"));
+    }
+    if configuration.initial.temperature != 0.0 {
+        keys.push("initial.temperature");
+    }
+    let begins_at = configuration.initial.axial_velocity;
+    if begins_at != configuration.natural_axial_velocity(configuration.initial_wave_speed()) {
+        rates.push("initial.axial_velocity");
     }
     match configuration.contact.cohesion.map(|it| it.surface_energy) {
-        Some(energy) if energy > 0.0 => keys.push("contact.surface_energy"),
-        Some(_) => keys.push("contact.cohesion_force"),
+        Some(energy) if energy > 0.0 => {
+            keys.push("contact.surface_energy (unless units.surface_energy gives it)");
+        }
+        Some(_) => keys.push("contact.cohesion_force (unless units.cohesion_force gives it)"),
         None => {}
     }
     if let Some(inlet) = configuration.inlet {
         rates.push("inlet.velocity");
         rates.extend(inlet.feed_rate.map(|_| "inlet.feed_rate"));
     }
-    let strain_rate = ScheduledParameter::StrainRate;
-    if configuration.drive.schedule(strain_rate).is_some() {
+    if is_led(ScheduledParameter::StrainRate) {
         rates.push("strain rates of drive.schedule");
     }
     let by = |keys: &[&str], power: f64, of: &str| {

@@ -32,7 +32,7 @@ def compare_laws(
     width : array_like
         w of each run, shape (runs,).
     time : array_like
-        Its transition time, or its end without a transition.
+        Its transition time; without one, the time up to which it was watched (column `watched`).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
     family : {"gamma", "exponential", "weibull"}
@@ -84,7 +84,7 @@ def compare_laws_with_scatter(
     width : array_like
         w of each run, shape (runs,).
     time : array_like
-        Its transition time, or its end without a transition.
+        Its transition time; without one, the time up to which it was watched (column `watched`).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
 

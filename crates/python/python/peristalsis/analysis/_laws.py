@@ -34,7 +34,7 @@ def fit_law_to_runs(
     width : array_like
         w of each run, shape (runs,).
     time : array_like
-        Its transition time, or its end without a transition.
+        Its transition time; without one, the time up to which it was watched (column `watched`).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
     family : {"gamma", "exponential", "weibull"}
@@ -91,7 +91,7 @@ def fit_law_to_runs_in_windows(
     width : array_like
         w of each run, shape (runs,).
     time : array_like
-        Its transition time, or its end without a transition.
+        Its transition time; without one, the time up to which it was watched (column `watched`).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
     family : {"gamma", "exponential", "weibull"}
@@ -137,7 +137,7 @@ def fit_law_with_scatter(
     width : array_like
         w of each run, shape (runs,).
     time : array_like
-        Its transition time, or its end without a transition.
+        Its transition time; without one, the time up to which it was watched (column `watched`).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
 
@@ -187,7 +187,7 @@ def ensembles_by_width(
     width : array_like
         w of each run, shape (runs,).
     time : array_like
-        Its transition time, or its end without a transition.
+        Its transition time; without one, the time up to which it was watched (column `watched`).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
     family : {"gamma", "exponential", "weibull"}

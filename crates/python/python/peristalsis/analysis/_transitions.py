@@ -49,7 +49,7 @@ class Survival:
     Parameters
     ----------
     time : array_like
-        Transition times, and ends of runs without a transition, shape (runs,).
+        Transition times; without one, the times up to which runs were watched (column `watched`), shape (runs,).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
 
@@ -193,11 +193,6 @@ def transition_time(
     AnalysisError
         For averages that are not finite.
 
-    Notes
-    -----
-    Kaplan & Meier, J. Am. Stat. Assoc. 53, 457 (1958); Royston & Parmar, BMC Med. Res. Methodol. 13, 152 (2013); intervals of
-    the variance from the jackknife of its logarithm: Miller, Ann. Math. Stat. 39, 567 (1968).
-
     Examples
     --------
     >>> from peristalsis import analysis
@@ -217,7 +212,7 @@ def restricted_moments(
     Parameters
     ----------
     time : array_like
-        Transition times, and ends of runs without a transition, shape (runs,).
+        Transition times; without one, the times up to which runs were watched (column `watched`), shape (runs,).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
     horizon : float
@@ -232,6 +227,11 @@ def restricted_moments(
     ------
     AnalysisError
         Below 3 transitions, or for a horizon beyond the time watched, unless the curve has come to 0 by then.
+
+    Notes
+    -----
+    Kaplan & Meier, J. Am. Stat. Assoc. 53, 457 (1958); Royston & Parmar, BMC Med. Res. Methodol. 13, 152 (2013); intervals of
+    the variance from the jackknife of its logarithm: Miller, Ann. Math. Stat. 39, 567 (1968).
 
     Examples
     --------
@@ -252,7 +252,7 @@ def fit_lifetime(
     Parameters
     ----------
     time : array_like
-        Transition times, and ends of runs without a transition, shape (runs,).
+        Transition times; without one, the times up to which runs were watched (column `watched`), shape (runs,).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
     family : {"gamma", "exponential", "weibull"}
@@ -290,7 +290,7 @@ def fit_shifted_exponential(
     Parameters
     ----------
     time : array_like
-        Transition times, and ends of runs without a transition, shape (runs,).
+        Transition times; without one, the times up to which runs were watched (column `watched`), shape (runs,).
     observed : array_like of bool, optional
         Whether there was a transition; all, by default.
 

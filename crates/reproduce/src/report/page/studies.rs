@@ -16,7 +16,7 @@ pub(super) fn section(report: &Report) -> Markup {
                     "Each study is a file; its runs are named by what they compute, so that any of them can be made again or compared \
                     alone."
                     @if report.size == Size::Quick {
-                        " The texts are those of the quick designs, which lie in " code { "quick/" } " beside the full ones."
+                        " The texts are those of the quick designs: the full ones with what " code { "studies/quick.toml" } " has in their place."
                     }
                 }
                 @for study in &report.studies { (entry(report, study)) }
