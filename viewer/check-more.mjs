@@ -304,7 +304,7 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     again.end();
   }
 
-  /** Rows 11 to 13 of those who met the page first, files of the stage, and a start at another time. */
+  /** Files of the stage, and a start at another time. */
   async function checkNumbers(browser) {
     const { address, end } = await serve("frictionless", "--set", "tube.waves=2");
     const { page, close } = await open(browser, `${address}#jump=2`, desk);

@@ -157,7 +157,7 @@ mod tests {
         assert!(best(|place| libm::exp(1.0 / (3.05 - place)))[1].excess < 4.0);
     }
 
-    /// REFEREE, Methods: laws were compared with a constant scatter, which the runs reject.
+    /// Laws were compared with a constant scatter, which the runs reject.
     #[test]
     fn laws_are_told_apart_where_the_scatter_grows() {
         let laws = [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential];

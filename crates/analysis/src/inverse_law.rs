@@ -182,7 +182,7 @@ mod tests {
         );
     }
 
-    /// REFEREE, F2: a free power finds 1.5 where alpha is 1, and only the goodness of fit tells.
+    /// A free power finds 1.5 where alpha is 1, and only the goodness of fit tells.
     #[test]
     fn a_correction_passes_for_another_exponent() {
         let (mut exponent, mut here, mut power, mut line) = (0.0, 0.0, 0.0, 0.0);

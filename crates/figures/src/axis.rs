@@ -370,7 +370,7 @@ mod tests {
         assert_eq!(labels(&one, 3), ["20", "50", "100", "200", "500"]);
     }
 
-    /// COMMAND-LINE, low: `length` (b) and `collapse` (d) lacked labels at the low end.
+    /// `length` (b) and `collapse` (d) lacked labels at the low end.
     #[test]
     fn labels_reach_both_ends_of_an_axis() {
         for (range, expected) in [
@@ -386,7 +386,7 @@ mod tests {
         }
     }
 
-    /// COMMAND-LINE, low: fractional ticks on the number of a wave.
+    /// Fractional ticks on the number of a wave.
     #[test]
     fn what_is_counted_has_ticks_at_whole_numbers() {
         for waves in [1, 2, 3, 5, 20, 137] {

@@ -336,7 +336,7 @@ mod tests {
         assert_eq!(signed.colour(9.0), diverging(1.0));
     }
 
-    /// COMMAND-LINE, low: colour bars lacked their lower end.
+    /// Colour bars lacked their lower end.
     #[test]
     fn a_bar_says_where_it_begins_and_ends() {
         let ends = |scale: ColourScale| {

@@ -210,7 +210,7 @@ fn restitution_is_the_same_for_either_sphere_and_any_observer() {
     }
 }
 
-/// COMMAND-LINE, wanted: restitution as an input. The damping that a restitution asks for gives it, at its own speed; without
+/// Restitution as an input. The damping that a restitution asks for gives it, at its own speed; without
 /// damping the overlap is that which the law foretells.
 #[test]
 fn the_damping_of_a_restitution_gives_that_restitution() {

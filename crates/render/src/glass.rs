@@ -32,7 +32,7 @@ pub(crate) fn before(behind: Vec3, normal: Vec3, colour: Colour) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// COMMAND-LINE, low: `--wall glass` was murky.
+    /// `--wall glass` was murky.
     #[test]
     fn glass_hides_little_before_the_eye_and_more_at_its_rim() {
         let black = Vec3::ZERO;

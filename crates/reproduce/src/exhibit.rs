@@ -226,7 +226,7 @@ pub(crate) fn fitted_curve(
 mod tests {
     use super::*;
 
-    /// COMMAND-LINE, low: "probability of a line: 0.000".
+    /// It was "probability of a line: 0.000".
     #[test]
     fn a_probability_is_never_nought() {
         for (value, expected) in [(0.0, "< 0.001"), (9e-4, "< 0.001"), (0.0312, "0.031")] {

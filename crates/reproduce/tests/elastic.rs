@@ -476,7 +476,7 @@ fn back_flow_from_one_start_only_is_none() {
     assert_eq!(of_branches("S4", &rows).verdict, Verdict::Differs);
 }
 
-/// REFEREE, S6: where runs of one model differ as much as those of both, nothing tells the models apart.
+/// Where runs of one model differ as much as those of both, nothing tells the models apart.
 #[test]
 fn pairs_within_a_model_are_the_null() {
     let fast = Tube {
@@ -507,7 +507,7 @@ fn pairs_within_a_model_are_the_null() {
     assert_verdict("S6", &evidence, Verdict::Open);
 }
 
-/// REFEREE, S3: the interval in which the jump vanishes rests on strain rates with replicates, not on single runs.
+/// The interval in which the jump vanishes rests on strain rates with replicates, not on single runs.
 #[test]
 fn single_runs_do_not_narrow_the_interval() {
     for (replicates, interval) in [(1, (2.5e-3, PICTURED)), (5, (3e-3, 3.5e-3))] {

@@ -456,7 +456,7 @@ fn a_verdict_belongs_to_a_wall() {
     assert_says(&found.summary, "Reproduced on 24 × 26; differs on 12 × 14.");
 }
 
-/// REFEREE, F9: grains that coast without contacts are no jam.
+/// Grains that coast without contacts are no jam.
 #[test]
 fn a_flow_without_contacts_is_void() {
     let mut evidence = rows::evidence(&[]);
@@ -474,7 +474,7 @@ fn a_flow_without_contacts_is_void() {
     assert_verdict(&examine("F9", &evidence), Verdict::Reproduced);
 }
 
-/// REFEREE, methods: one rule for leaks; a strain rate at which grains leave the tube counts for no claim.
+/// One rule for leaks; a strain rate at which grains leave the tube counts for no claim.
 #[test]
 fn leaking_strain_rates_are_left_out_everywhere() {
     let mut evidence = rows::evidence(&[]);
@@ -528,7 +528,7 @@ fn too_few_runs_leave_every_verdict_open() {
     }
 }
 
-/// REFEREE, F1: fast grains that hardly touch are no jam by F9, and count in F1.
+/// Fast grains that hardly touch are no jam by F9, and count in F1.
 #[test]
 fn a_fast_flow_that_coasts_is_told() {
     for (contacts, is_told) in [(0.3, true), (2.0, false)] {
@@ -542,7 +542,7 @@ fn a_fast_flow_that_coasts_is_told() {
     }
 }
 
-/// REFEREE, F9: what a single run from jammed cannot tell is not told.
+/// What a single run from jammed cannot tell is not told.
 #[test]
 fn so_few_runs_from_jammed_cannot_tell_that_the_start_does_not_matter() {
     let tube = Tube {
@@ -560,7 +560,7 @@ fn so_few_runs_from_jammed_cannot_tell_that_the_start_does_not_matter() {
     }
 }
 
-/// REFEREE, F9: jams of denser grains have contacts; whether the start matters there is told, either way.
+/// Jams of denser grains have contacts; whether the start matters there is told, either way.
 #[test]
 fn denser_grains_are_told_from_both_starts() {
     let mut evidence = rows::evidence(&[]);

@@ -339,7 +339,7 @@ fn advance_to(run: &mut Run, step: u64) -> Result<(), RunError> {
 mod tests {
     use super::*;
 
-    /// COMMAND-LINE, low: what a trial saw, and so its warnings, depended on the speed of the machine.
+    /// What a trial saw, and so its warnings, depended on the speed of the machine.
     #[test]
     fn a_trial_has_as_many_steps_on_every_machine() {
         let configuration = |settings: &str| {

@@ -186,7 +186,6 @@ fn mixing_and_segregation_do_not_depend_on_the_numbers_of_the_grains() {
     assert_eq!(radial(&places), ascending);
 }
 
-/// PYTHON, medium 7.
 #[test]
 fn a_run_that_is_led_past_its_end_has_a_configuration_that_repeats_it() {
     let mut run = Run::new(configuration(

@@ -165,7 +165,7 @@ fn a_run_of_a_thousand_short_pieces_is_the_run_in_one_go() {
     assert!(in_pieces("frictional", &frictional, 4) > 1000);
 }
 
-/// PYTHON, high 5: one kind of checkpoint for the command line and Python.
+/// One kind of checkpoint for the command line and Python.
 #[test]
 fn a_snapshot_is_the_checkpoint_of_a_folder_and_goes_on_under_other_lengths_of_the_same_physics() {
     let configuration = common::configuration("frictionless", STRAIN);

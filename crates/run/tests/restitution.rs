@@ -1,4 +1,4 @@
-//! COMMAND-LINE, wanted: two grains that meet in the engine part with the restitution that the configuration asks for.
+//! Two grains that meet in the engine part with the restitution that the configuration asks for.
 
 mod common;
 

@@ -185,7 +185,7 @@ fn a_snapshot_goes_on_with_the_same_bits_after_a_change() {
     assert!(Run::from_snapshot(damaged).is_err());
 }
 
-/// PYTHON, medium 12: a period shorter than a step would advance by no steps, without a word.
+/// A period shorter than a step would advance by no steps, without a word.
 #[test]
 fn a_wave_whose_period_is_shorter_than_a_step_is_refused_and_a_few_steps_are_warned_of() {
     let configuration = configuration("frictionless", "grains.number=5 tube.waves=2");

@@ -55,7 +55,7 @@ fn strips_at_the_critical_temperature_have_the_length_of_conformal_theory() {
     assert!((circumference_over_length(8, 1e3) / 8.0 - libm::log(1e3)).abs() < 0.01);
 }
 
-/// REFEREE, Methods: with Ising data 1/nu came out as 1.057 +- 0.008.
+/// With Ising data 1/nu came out as 1.057 +- 0.008.
 #[test]
 fn the_exponents_of_ising_are_found() {
     let transform = |p: &[f64], k: usize, size: f64, point: CurvePoint| {

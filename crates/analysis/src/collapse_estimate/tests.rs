@@ -215,19 +215,18 @@ fn assert_covered(kind: &Kind, sets: u64, least: usize) {
     }
 }
 
-/// PYTHON, high 2: errors of collapses were several times too small, those of a critical line most.
+/// Errors of collapses were several times too small, those of a critical line most.
 #[test]
 fn errors_of_a_finite_size_collapse_cover() {
     assert_covered(&kinds()[0], 20, 17);
 }
 
-/// PYTHON, high 2.
 #[test]
 fn errors_at_known_critical_points_cover() {
     assert_covered(&kinds()[1], 20, 17);
 }
 
-/// PYTHON, high 2. More than half of these said that they could not be trusted.
+/// More than half of these said that they could not be trusted.
 #[test]
 fn errors_of_a_critical_line_cover() {
     assert_covered(&kinds()[2], 6, 5);
@@ -313,7 +312,7 @@ fn a_correction_to_scaling_can_be_allowed_for_and_is_missed_where_it_is_not() {
     }
 }
 
-/// REFEREE, Methods: the error of a critical width was taken for that of every point by itself.
+/// The error of a critical width was taken for that of every point by itself.
 #[test]
 fn the_error_of_a_critical_width_is_common_to_its_curve() {
     let kind = &kinds()[1];
@@ -367,7 +366,7 @@ fn the_error_of_a_critical_width_is_common_to_its_curve() {
     assert!((0.6..1.6).contains(&moved) && held > 2.0, "{moved} {held}");
 }
 
-/// REFEREE, F3: exponents that each lie within two errors of the source's lie together outside of their valley.
+/// Exponents that each lie within two errors of the source's lie together outside of their valley.
 #[test]
 fn exponents_are_compared_together() {
     let kind = &kinds()[1];
@@ -412,7 +411,7 @@ fn exponents_are_compared_together() {
     assert_coverage(improbable, 20, 0.3173, 0.03, "probability of the truth");
 }
 
-/// PYTHON, high 2: three starts on a pure power law gave a = 1.34, -0.02 and 2.36, all converged.
+/// Three starts on a pure power law gave a = 1.34, -0.02 and 2.36, all converged.
 #[test]
 fn a_pure_power_law_fixes_no_exponent_and_the_answer_says_so() {
     let rates = [0.03, 0.05, 0.08, 0.12, 0.2];

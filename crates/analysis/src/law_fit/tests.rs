@@ -93,7 +93,7 @@ fn what_does_not_determine_a_law_is_refused() {
     );
 }
 
-/// REFEREE, F2: the exponent is that of the window until the window is close to w_c.
+/// The exponent is that of the window until the window is close to w_c.
 #[test]
 fn the_exponent_against_the_window() {
     let (value, error) = noisy(3, 1.0);

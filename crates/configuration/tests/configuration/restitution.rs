@@ -1,4 +1,4 @@
-//! COMMAND-LINE, wanted: restitution as an input, instead of the damping of either law.
+//! Restitution as an input, instead of the damping of either law.
 
 use peristalsis_configuration::{Configuration, ProblemKind};
 use peristalsis_physics::contact::{Impact, NormalLaw};

@@ -10,7 +10,6 @@ TIMES = [1.0, 2.0, 3.0]
 
 @pytest.mark.parametrize("observed", [[1, np.nan, 1], [1.0, 0.5, 0.0], [True, None, True], ["yes", "no", "yes"]])
 def test_a_missing_outcome_is_no_transition(observed: list[object]) -> None:
-    """PYTHON, low: `observed=[1, nan, 1]` counts NaN as a transition."""
     for refuse in (
         lambda: analysis.Survival(TIMES, observed),
         lambda: analysis.fit_lifetime(TIMES, observed),
@@ -23,12 +22,11 @@ def test_a_missing_outcome_is_no_transition(observed: list[object]) -> None:
 
 @pytest.mark.parametrize("observed", [[1, 0, 1], [1.0, 0.0, 1.0], [True, False, True], np.array([1, 0, 1], dtype=np.int8)])
 def test_ones_and_noughts_are_outcomes(observed: object) -> None:
-    """PYTHON, low."""
     assert analysis.Survival(TIMES, observed).observed == 2
 
 
 def test_outcomes_of_a_frame_are_outcomes() -> None:
-    """PYTHON, low: columns of pandas and polars, missing values among them."""
+    """Columns of pandas and polars, missing values among them."""
     import pandas
     import polars
 
@@ -40,7 +38,6 @@ def test_outcomes_of_a_frame_are_outcomes() -> None:
 
 
 def test_a_scaling_wants_all_its_parameters() -> None:
-    """PYTHON, low: two parameters for a scaling of three are reported as "overlap 0"."""
     x = np.linspace(-1, 1, 9)
     curves = [(p, x, np.exp(x * p), np.full(9, 0.1)) for p in (1.0, 2.0)]
     collapse = analysis.Collapse(curves, "finite_size")
@@ -61,7 +58,7 @@ def test_a_scaling_wants_all_its_parameters() -> None:
 
 @pytest.mark.parametrize(("a", "b"), [(0.0, 0.05), (2.4, 1.6)])
 def test_a_critical_line_that_is_left_open_is_not_trusted(a: float, b: float) -> None:
-    """PYTHON, high 2: three starts on a pure power law gave three answers with small errors, the caveat nowhere in Python."""
+    """Three starts on a pure power law gave three answers with small errors, the caveat nowhere in Python."""
     randomness, gap = np.random.default_rng(4), np.geomspace(0.02, 0.4, 6)
     # y = (x_c - x)^-1.5 says of a and b that a = 1.5 b, and no more.
     time = 5 * gap**-1.5
@@ -74,7 +71,6 @@ def test_a_critical_line_that_is_left_open_is_not_trusted(a: float, b: float) ->
 
 
 def test_results_are_pickled_and_say_their_fields() -> None:
-    """PYTHON, low: thin docstrings."""
     import pickle
 
     fit = analysis.fit_line([0, 1, 2], [1, 3, 5], [0.1, 0.1, 0.1])

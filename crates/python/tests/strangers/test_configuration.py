@@ -21,7 +21,6 @@ def configuration() -> Configuration:
 
 
 def test_a_configuration_is_a_mapping(configuration: Configuration) -> None:
-    """PYTHON, medium 10; what would delight: `configuration["drive.width"]`."""
     assert configuration["drive.width"] == 2.6 and configuration["tube"]["waves"] == 2
     assert "drive.width" in configuration and "drive" in configuration and "drive.widht" not in configuration
     assert 3 not in configuration
@@ -33,7 +32,7 @@ def test_a_configuration_is_a_mapping(configuration: Configuration) -> None:
 
 
 def test_all_values_of_a_configuration_make_it_again(configuration: Configuration) -> None:
-    """PYTHON, medium 10: every key that it lists can be given."""
+    """Every key that it lists can be given."""
     steps = {"form": "steps", "parameter": "width", "at": [0, 10], "values": [2.9, 2.7]}
     for one in (configuration, Configuration("frictional"), configuration.replace(schedule=[steps])):
         preset = "frictional" if "drive.force_amplitude" in one else "frictionless"
@@ -43,14 +42,12 @@ def test_all_values_of_a_configuration_make_it_again(configuration: Configuratio
 
 
 def test_a_missing_key_says_what_may_be_meant(configuration: Configuration) -> None:
-    """PYTHON, medium 10."""
     for wrong in ("drive.widht", "width", "tube.width"):
         with pytest.raises(KeyError, match="drive.width"):
             configuration[wrong]
 
 
 def test_a_configuration_is_pickled_copied_and_hashed(configuration: Configuration) -> None:
-    """PYTHON, medium 10."""
     for other in (pickle.loads(pickle.dumps(configuration)), copy.copy(configuration), copy.deepcopy(configuration)):
         assert other == configuration and hash(other) == hash(configuration)
     wider = configuration.replace(width=2.7)
@@ -59,7 +56,6 @@ def test_a_configuration_is_pickled_copied_and_hashed(configuration: Configurati
 
 
 def test_values_are_replaced(configuration: Configuration) -> None:
-    """PYTHON, medium 10: `configuration.replace(width=2.5)`."""
     other = configuration.replace({"run.seed": 4}, width=2.5)
     changed = {key for key in configuration if configuration[key] != other[key]}
     assert changed == {"drive.width", "run.seed"} and other["drive.width"] == 2.5
@@ -70,7 +66,6 @@ def test_values_are_replaced(configuration: Configuration) -> None:
 
 
 def test_a_configuration_prints(configuration: Configuration) -> None:
-    """PYTHON, medium 10."""
     assert repr(configuration) == (
         "<peristalsis.Configuration: 41 grains in 2 waves, width 2.6, strain_rate 0.05, seed 3>"
     )
@@ -107,7 +102,6 @@ def test_a_configuration_is_checked_as_the_command_line_does() -> None:
 
 
 def test_errors_speak_of_keywords_and_not_of_flags() -> None:
-    """PYTHON, low: words of the command line in Python errors."""
     with pytest.raises(ConfigurationError, match="there is no keyword widht; did you mean 'width'"):
         Simulation.preset("frictionless", widht=2.6)
     for make in (lambda: Simulation.preset("frictionless", width=-1), lambda: Configuration("frictionless", {"drive.widht": 1})):

@@ -44,7 +44,6 @@ NAMES = dict(public())
 
 
 def test_the_book_has_every_name_with_its_words() -> None:
-    """PYTHON, low: no reference in the book."""
     program = Path(__file__).parents[4] / "scripts" / "book_api.py"
     reference = subprocess.check_output([sys.executable, program], text=True)
     said = {
@@ -68,7 +67,6 @@ def unsaid(names: list[str], described: str | None) -> list[str]:
 
 
 def test_inherited_names_are_among_them() -> None:
-    """PYTHON, low: thin docstrings."""
     for name in ("positions", "contacts", "width", "add_writer", "save", "load", "preset", "run", "warnings"):
         assert f"peristalsis.Simulation.{name}" in NAMES
     assert {"peristalsis.Configuration.check", "peristalsis.Table.to_pandas", "peristalsis.plot.flow"} <= set(NAMES)
@@ -76,7 +74,6 @@ def test_inherited_names_are_among_them() -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_public_name_is_documented_with_an_example_that_runs(name: str) -> None:
-    """PYTHON, low: thin docstrings. What would delight: every public name with an example that is run."""
     found = NAMES[name]
     function = getattr(found, "__func__", found)
     text = inspect.getdoc(function) or ""

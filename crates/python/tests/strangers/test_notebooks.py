@@ -25,7 +25,6 @@ def test_there_are_four() -> None:
 
 
 def test_every_figure_is_stored(notebook: Any) -> None:
-    """PYTHON, high 1 and low: notebooks."""
     outputs = [output for cell in notebook["cells"] for output in cell.get("outputs", ())]
     assert not any(output["output_type"] == "error" for output in outputs)
     pictures = [output["data"]["image/png"] for output in outputs if "image/png" in output.get("data", {})]
@@ -34,7 +33,6 @@ def test_every_figure_is_stored(notebook: Any) -> None:
 
 
 def test_a_lesson_asks_expects_and_has_exercises_with_answers(notebook: Any) -> None:
-    """PYTHON, low: notebooks."""
     words = "".join("".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "markdown")
     for part in ("**The question.**", "**The model", "**What to expect.**", "## Exercises", "## Answers"):
         assert part in words
@@ -43,7 +41,6 @@ def test_a_lesson_asks_expects_and_has_exercises_with_answers(notebook: Any) -> 
 
 
 def test_the_lesson_on_censoring_has_runs_that_are_censored() -> None:
-    """PYTHON, low: `study` explained censoring with "24 transitions in 24 runs"."""
     notebook = json.loads((FOLDER / "study.ipynb").read_text(encoding="utf-8"))
     outputs = [output for cell in notebook["cells"] for output in cell.get("outputs", ())]
     said = "".join("".join(output.get("text", "")) for output in outputs)
@@ -56,5 +53,4 @@ def test_nothing_that_is_stored_is_a_warning(notebook: Any) -> None:
 
 
 def test_no_legend_is_put_wherever_it_falls(notebook: Any) -> None:
-    """PYTHON, low: a bare `axes.legend()` covers curves."""
     assert not any("legend()" in "".join(cell["source"]) for cell in notebook["cells"])

@@ -24,7 +24,6 @@ def test_what_is_made_of_schemas_is_up_to_date(script: str, made: ModuleType, mo
 
 
 def test_keywords_are_typed() -> None:
-    """PYTHON, low: `preset(**keywords)` is `Any`."""
     hints = get_type_hints(_types.Keywords)
     assert hints["width"] is float and hints["waves"] is SupportsIndex
     assert get_args(hints["initial_state"]) == get_args(hints["state"]) == ("rest", "settled", "jammed", "placed")
@@ -34,13 +33,11 @@ def test_keywords_are_typed() -> None:
 
 
 def test_the_status_of_a_summary_is_typed_as_python_says_it() -> None:
-    """PYTHON, low: a normal run's status is "interrupted"."""
     assert set(get_args(get_type_hints(_types.Summary)["status"])) == {"running", "complete", "settled", "diverged"}
 
 
 @pytest.mark.parametrize("settings", [{}, {"body_force": -0.001}])
 def test_a_summary_has_the_keys_of_its_type(settings: dict[str, float]) -> None:
-    """PYTHON, low: `summary()` is `Any`."""
     simulation = peristalsis.Simulation.preset("frictionless", waves=2, **settings)
     simulation.run(periods=2)
 
@@ -58,7 +55,6 @@ def test_a_summary_has_the_keys_of_its_type(settings: dict[str, float]) -> None:
 
 
 def test_the_package_says_whose_it_is_and_brings_the_command() -> None:
-    """PYTHON, high 5 and medium 11: no console script; metadata without URL, author, licence text."""
     (script,) = entry_points(group="console_scripts", name="peristalsis")
     assert callable(script.load())
     about = metadata("peristalsis")
@@ -67,20 +63,17 @@ def test_the_package_says_whose_it_is_and_brings_the_command() -> None:
 
 
 def test_the_book_has_its_pages() -> None:
-    """PYTHON, low: no installation page, Python guide, reference, columns of studies, guide to the viewer, troubleshooting."""
     summary = (ROOT / "docs" / "book" / "src" / "SUMMARY.md").read_text(encoding="utf-8")
     for page in ("start/installation", "guides/python", "reference/api", "reference/quantities", "guides/viewer", "guides/troubleshooting"):
         assert f"({page}.md)" in summary
 
 
 def test_plot_is_there_without_being_imported() -> None:
-    """PYTHON, low: `peristalsis.plot` raises AttributeError until imported."""
     program = "import peristalsis; print(callable(peristalsis.plot.flow), 'plot' in dir(peristalsis))"
     assert subprocess.check_output([sys.executable, "-c", program], text=True).split() == ["True", "True"]
 
 
 def test_without_matplotlib_plot_says_what_to_install() -> None:
-    """PYTHON, low: a clear error where Matplotlib is missing."""
     program = "import sys; sys.modules['matplotlib'] = None; import peristalsis; peristalsis.plot"
     answer = subprocess.run([sys.executable, "-c", program], text=True, capture_output=True)
     assert "ImportError" in answer.stderr and "pip install 'peristalsis[plot]'" in answer.stderr

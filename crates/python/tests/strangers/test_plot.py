@@ -47,7 +47,6 @@ def run(small: Simulation) -> Simulation:
 
 @pytest.mark.filterwarnings("ignore")
 def test_every_figure_of_a_notebook_is_shown() -> None:
-    """PYTHON, high 1."""
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(text) for text in CELLS])
     nbclient.NotebookClient(notebook, timeout=120).execute()
     pictures = [sum("image/png" in output.get("data", {}) for output in cell.outputs) for cell in notebook.cells]
@@ -55,7 +54,6 @@ def test_every_figure_of_a_notebook_is_shown() -> None:
 
 
 def test_settings_outside_stay_as_they_are(run: Simulation) -> None:
-    """PYTHON, high 1."""
     before = dict(matplotlib.rcParams)
     plot.flow(run)
     plot.snapshot(run)
@@ -63,13 +61,11 @@ def test_settings_outside_stay_as_they_are(run: Simulation) -> None:
 
 
 def test_a_saved_figure_has_the_dots_per_inch_of_the_style(run: Simulation, tmp_path: Path) -> None:
-    """PYTHON, low."""
     plot.flow(run).figure.savefig(tmp_path / "flow.png")
     assert imread(tmp_path / "flow.png").shape[1] == int(86 / 25.4 * 300)
 
 
 def test_the_font_is_that_of_the_command_line(run: Simulation, tmp_path: Path) -> None:
-    """PYTHON, low."""
     assert "Arimo" in findfont(FontProperties(family=plot.STYLE["font.family"][:1]), fallback_to_default=False)
     plot.flow(run).figure.savefig(tmp_path / "flow.svg")
     text = (tmp_path / "flow.svg").read_text()
@@ -77,21 +73,18 @@ def test_the_font_is_that_of_the_command_line(run: Simulation, tmp_path: Path) -
 
 
 def test_a_package_without_its_fonts_says_so(tmp_path: Path) -> None:
-    """PYTHON, low: DejaVu in silence, where fonts were links that led nowhere."""
     with pytest.warns(RuntimeWarning, match="Arimo-Regular-subset.ttf.*install it anew"):
         assert not _style._add_fonts(tmp_path)
     assert _style._add_fonts(_style._FONTS) and _style._HAS_FONT
 
 
 def test_symbols_are_italic(run: Simulation) -> None:
-    """PYTHON, low."""
     assert plot.flow(run).get_xlabel() == "time, $t/T$"
     assert plot.profile(run, "axial_velocity").get_ylabel() == "axial velocity, $v_z/c$"
     assert plot.profile(run, "granular_temperature").get_ylabel().endswith(r"$T_{\mathrm{g}}/(m\,c^2)$")
 
 
 def test_the_newtonian_fluid_stands_once_in_a_legend(run: Simulation) -> None:
-    """PYTHON, low."""
     wider = Simulation.preset("frictionless", width=2.9, strain_rate=0.1, waves=2)
     wider.run(periods=2)
     both = plot.flow(wider, plot.flow(run, label="narrow"), label="wide")
@@ -106,7 +99,6 @@ def test_the_newtonian_fluid_stands_once_in_a_legend(run: Simulation) -> None:
 
 
 def test_a_long_tube_is_shown_in_parts_that_can_be_read() -> None:
-    """PYTHON, low."""
     sim = Simulation.preset("frictionless", seed=1)
     axes = plot.snapshot(sim)
     assert axes.get_xlim() == (0.0, 40.0) and "4 of 10 waves" in axes.get_xlabel()
@@ -116,7 +108,6 @@ def test_a_long_tube_is_shown_in_parts_that_can_be_read() -> None:
 
 
 def test_a_snapshot_has_the_wall_and_counts_grains_that_escaped() -> None:
-    """PYTHON, high 3."""
     sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1)
     assert "escaped" not in plot.snapshot(sim).get_title()
     sim.run(periods=40)

@@ -60,14 +60,12 @@ def tight() -> Simulation:
     ],
 )  # fmt: skip
 def test_what_cannot_be_is_refused_in_the_words_of_the_caller(act: Act, kind: type, words: str, tight: Simulation) -> None:
-    """PYTHON, low: errors that spoke of internals, or came late."""
     with pytest.raises(kind, match=re.escape(words)):
         act(tight)
     assert tight.steps == 0
 
 
 def test_one_writer_a_pair_and_a_writer_of_ones_own_are_taken(tight: Simulation, tmp_path: Path) -> None:
-    """PYTHON, low: a Writer that is not in a list, or given to `add_writer`."""
     seen: list[int] = []
     tight.add_writer(own := Writer(tmp_path / "own.gsd", every=0.5))
     tight.run(periods=1, writers=(one := Writer(tmp_path / "one.gsd", at=1)), callback=[(lambda sim: seen.append(sim.steps), 100)])
@@ -75,21 +73,18 @@ def test_one_writer_a_pair_and_a_writer_of_ones_own_are_taken(tight: Simulation,
 
 
 def test_diameters_are_named_by_their_place(tight: Simulation) -> None:
-    """PYTHON, low: `from_positions(diameters=[1, -2])` named another key."""
     with pytest.raises(ConfigurationError, match=r"diameters\[1\] = -2.0 is no diameter"):
         Simulation.from_positions(tight.configuration, [[0, 0, 1], [0, 0, 5]], diameters=[1, -2])
 
 
 @pytest.mark.parametrize("seed", ["a", 1.5, -1, None, True, 2**64, [1, 2]])
 def test_a_seed_that_is_none_names_the_generator(seed: object) -> None:
-    """PYTHON, low: errors of seeds did not say that a Generator is taken."""
     with pytest.raises(ConfigurationError, match=r"run.seed = .*\n.*0 to 2\*\*63 - 1, or a numpy.random.Generator"):
         Configuration("frictionless", seed=seed)  # type: ignore[arg-type]
     assert Configuration("frictionless", seed=np.int64(3)).seed == 3
 
 
 def test_a_complete_run_that_is_run_again_says_so() -> None:
-    """PYTHON, low: a run that does nothing was silent."""
     sim = Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1, periods=1)
     sim.run()
     with pytest.warns(PeristalsisWarning, match="the run is complete.*periods or duration"):
@@ -97,14 +92,12 @@ def test_a_complete_run_that_is_run_again_says_so() -> None:
 
 
 def test_public_modules_list_public_names_alone() -> None:
-    """PYTHON, low: `dir(peristalsis)` had names that are none of the package's."""
     assert dir(peristalsis) == sorted([*peristalsis.__all__, "plot"])
     for module in (analysis, newtonian, plot):
         assert dir(module) == sorted(module.__all__)
 
 
 def test_a_scaling_may_answer_an_array_and_says_what_else_it_answered() -> None:
-    """PYTHON, low: a function that returns an array."""
     x = np.linspace(-0.5, 0.5, 21)
     curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0)]
 
@@ -118,7 +111,6 @@ def test_a_scaling_may_answer_an_array_and_says_what_else_it_answered() -> None:
 
 
 def test_what_is_known_of_a_collapse_counts_as_points() -> None:
-    """PYTHON, low: functions of the analysis that Python lacked."""
     x = np.linspace(-0.5, 0.5, 21)
     curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
     collapse, start, steps = analysis.Collapse(curves, "finite_size"), [0.4, 0.9, 0.0], [0.1, 0.1, 0.02]
@@ -131,7 +123,6 @@ def test_what_is_known_of_a_collapse_counts_as_points() -> None:
 
 @pytest.mark.parametrize(("parameter", "first", "last"), [("width", 2.4, 2.8), ("strain_rate", 0.05, 0.13)])
 def test_the_configuration_of_a_ramp_ends_where_the_ramp_did(parameter: str, first: float, last: float) -> None:
-    """PYTHON, medium 7: the configuration of a ramp ended some steps after it."""
     sim = Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1, periods=0.5)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -143,7 +134,6 @@ def test_the_configuration_of_a_ramp_ends_where_the_ramp_did(parameter: str, fir
 
 
 def test_the_state_of_a_run_at_work_is_not_written_over(tmp_path: Path) -> None:
-    """COMMAND-LINE, high 1: a state saved over that of a running program."""
     sim = Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
     state = tmp_path / "state.checkpoint"
     (tmp_path / "config.toml").write_text(sim.configuration.to_toml())
@@ -166,7 +156,7 @@ def test_the_state_of_a_run_at_work_is_not_written_over(tmp_path: Path) -> None:
 
 
 def test_keys_and_parameters_that_are_not_there_name_those_that_are(tight: Simulation) -> None:
-    """PYTHON, medium 10: what one mistypes is answered with what one meant."""
+    """What one mistypes is answered with what one meant."""
     with pytest.raises(KeyError, match="did you mean 'drive.width'"):
         tight.configuration["widht"]
     with pytest.raises(AttributeError, match="whose drive.control has width"):

@@ -41,7 +41,6 @@ def summed(sim: Simulation) -> np.ndarray:
 
 
 def test_a_leaking_tube_is_warned_of_where_it_is_made() -> None:
-    """PYTHON, high 3."""
     with pytest.warns(PeristalsisWarning, match="tube.rings_per_wave: .*grains escape") as caught:
         sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1)
     assert [Path(it.filename).name for it in caught] == [Path(__file__).name]
@@ -54,7 +53,6 @@ def test_a_leaking_tube_is_warned_of_where_it_is_made() -> None:
 
 
 def test_what_a_run_has_seen_is_told_once_and_stands_in_the_repr() -> None:
-    """PYTHON, high 3."""
     with warnings.catch_warnings(record=True):
         warnings.simplefilter("always")
         sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1)
@@ -70,7 +68,6 @@ def test_what_a_run_has_seen_is_told_once_and_stands_in_the_repr() -> None:
 
 
 def test_a_simulation_without_doubts_says_nothing() -> None:
-    """PYTHON, high 3."""
     tight = Simulation.preset("frictionless-fine", **CALM)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -79,7 +76,6 @@ def test_a_simulation_without_doubts_says_nothing() -> None:
 
 
 def test_a_ramp_gets_no_warning_of_its_schedule_and_can_be_repeated() -> None:
-    """PYTHON, medium 7."""
     sim = Simulation.preset("frictionless-fine", **CALM, periods=2)
     for width in (2.5, 2.7, 2.8):
         sim.width = width
@@ -92,7 +88,7 @@ def test_a_ramp_gets_no_warning_of_its_schedule_and_can_be_repeated() -> None:
 
 
 def test_a_ramp_tells_doubts_of_the_whole_and_not_of_its_levels() -> None:
-    """PYTHON, medium 7: half way up the flow has not crossed the threshold yet."""
+    """Half way up the flow has not crossed the threshold yet."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         sim = Simulation.preset("frictionless-fine", width=2.95, strain_rate=0.01, waves=2, seed=1)
@@ -103,7 +99,6 @@ def test_a_ramp_tells_doubts_of_the_whole_and_not_of_its_levels() -> None:
 
 
 def test_a_loop_has_both_branches_with_errors_and_thresholds() -> None:
-    """PYTHON, what would delight: `sim.ramp`."""
     sim = Simulation.preset("frictionless-fine", **TIGHT)
     loop = sim.ramp("width", 2.4, 2.9, periods=24, levels=6)
     table = loop.table()
@@ -127,7 +122,6 @@ def test_a_loop_has_both_branches_with_errors_and_thresholds() -> None:
 
 
 def test_the_force_of_an_elastic_wall_is_ramped() -> None:
-    """PYTHON, what would delight: `sim.ramp`."""
     sim = Simulation.preset("frictional", waves=2, spheres_per_ring=10, rings_per_wave=10, number=10)
     force = sim.force_amplitude
     loop = sim.ramp("force_amplitude", 1.02 * force, 1.02 * force, periods=2, levels=1, back=False)
@@ -136,7 +130,6 @@ def test_the_force_of_an_elastic_wall_is_ramped() -> None:
 
 @pytest.mark.parametrize("preset", ["frictionless-fine", "frictional"])
 def test_forces_are_the_sums_of_the_contacts(preset: str) -> None:
-    """PYTHON, high 5."""
     sim = Simulation.preset(preset, waves=2, seed=2)
     sim.run(periods=0.1 if preset == "frictional" else 1)
     contacts = sim.contacts()
@@ -171,7 +164,7 @@ def test_forces_are_the_sums_of_the_contacts(preset: str) -> None:
 
 
 def test_forces_move_the_grains(tight: Simulation) -> None:
-    """PYTHON, high 5: f = m dv/dt."""
+    """f = m dv/dt."""
     tight.run(periods=2)
     before, force, step = tight.velocities, tight.forces, tight.configuration.time_step
     tight.step(1)
@@ -182,7 +175,6 @@ def test_forces_move_the_grains(tight: Simulation) -> None:
 
 
 def test_stress_and_contacts_of_two_grains_by_hand() -> None:
-    """PYTHON, high 5."""
     tube = Configuration("frictionless-fine", waves=2, strain_rate=0.05)
     sim = Simulation.from_positions(tube, [[0, 0, 5.0], [0.1, 0, 5.9]])
     stiffness = tube["contact.normal_stiffness"]
@@ -198,7 +190,6 @@ def test_stress_and_contacts_of_two_grains_by_hand() -> None:
 
 
 def test_the_stress_of_grains_at_rest_is_the_pressure_on_the_wall() -> None:
-    """PYTHON, high 5."""
     sim = Simulation.preset(
         "frictionless-fine", width=3.0, waves=2, strain_rate=0, duration=400, volume_fraction=0.35, contact_normal_damping=0.5
     )
@@ -215,7 +206,6 @@ def test_the_stress_of_grains_at_rest_is_the_pressure_on_the_wall() -> None:
 
 
 def test_the_radius_of_the_wall_is_a_function_of_place(tight: Simulation) -> None:
-    """PYTHON, what would delight: wall radius as an array."""
     rings = tight.wall_positions
     assert tight.wall_radius(rings[:, 2]) == pytest.approx(np.hypot(rings[:, 0], rings[:, 1]), abs=1e-9)
     assert tight.wall_radius([[0.0, tight.length]]).shape == (1, 2)
@@ -224,14 +214,12 @@ def test_the_radius_of_the_wall_is_a_function_of_place(tight: Simulation) -> Non
 
 @pytest.mark.parametrize("status", ["running", "complete"])
 def test_the_status_of_a_run_is_in_words_of_python(status: str) -> None:
-    """PYTHON, low: a normal run's status is "interrupted"."""
     sim = Simulation.preset("frictionless-fine", **TIGHT, periods=2)
     sim.run(periods=2 if status == "complete" else 1)
     assert sim.summary()["status"] == status
 
 
 def test_a_simulation_that_diverged_says_so_and_goes_no_further() -> None:
-    """PYTHON, low: a diverged simulation's status is "running"."""
     sim = Simulation.preset("frictionless", width=1.2, waves=2, seed=1, time_step=0.3, strain_rate=0.2)
     with pytest.raises(DivergedError, match="(?s)diverged at step .*help: take a shorter run.time_step"):
         sim.run(periods=50)
@@ -259,7 +247,6 @@ def test_copies_and_pickles_carry_all_but_the_writers(tight: Simulation, tmp_pat
 
 
 def test_steps_and_seeds_that_cannot_be(tight: Simulation) -> None:
-    """PYTHON, low and medium 12."""
     with pytest.raises(TypeError, match="steps is a whole number, not 1.5"):
         tight.step(1.5)  # type: ignore[arg-type]
     with pytest.raises(ConfigurationError, match=r"run.seed = 18446744073709551616 is no seed"):
@@ -273,14 +260,12 @@ def test_steps_and_seeds_that_cannot_be(tight: Simulation) -> None:
 
 
 def test_a_generator_of_numpy_is_a_seed_that_is_written_down() -> None:
-    """PYTHON, what would delight: seeds accept a NumPy `Generator`."""
     one, other = (Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=np.random.default_rng(5)) for _ in range(2))
     assert one.configuration == other.configuration and one.configuration["run.seed"] > 1000
     assert np.array_equal(Simulation.from_configuration(one.configuration).positions, other.positions)
 
 
 def test_several_callbacks_each_with_its_steps(tight: Simulation) -> None:
-    """PYTHON, what would delight: several callbacks."""
     seen: list[tuple[str, int]] = []
 
     def note(name: str) -> object:
@@ -293,7 +278,6 @@ def test_several_callbacks_each_with_its_steps(tight: Simulation) -> None:
 
 
 def test_progress_goes_to_a_log(tight: Simulation, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]) -> None:
-    """PYTHON, what would delight: progress by tqdm or logging."""
     with caplog.at_level(logging.INFO, logger="peristalsis"):
         tight.run(periods=1, progress="logging")
     assert "100%, period 1.0, J/Jmax" in caplog.text and capsys.readouterr().err == ""
@@ -320,7 +304,6 @@ def test_grains_settle_under_gravity_on_the_wall() -> None:
 
 
 def test_placed_grains_stay_in_order_and_say_that_no_file_repeats_them(tmp_path: Path) -> None:
-    """PYTHON, what would delight: user-placed grains."""
     tube = Configuration("frictionless-fine", waves=2, strain_rate=0.05, seed=9)
     places = np.array([[0, 0, 12.0], [0.2, 0, 3.0], [0, -0.3, 25.0]])
     speeds = np.array([[0, 0, 0.1], [0, 0, 0], [0.1, 0, 0]])
@@ -351,7 +334,6 @@ def test_placed_grains_stay_in_order_and_say_that_no_file_repeats_them(tmp_path:
     ],
 )
 def test_grains_that_cannot_stand_so_are_refused(places: list[list[float]], others: dict[str, object], words: str) -> None:
-    """PYTHON, what would delight: user-placed grains."""
     tube = Configuration("frictionless-fine", waves=2, strain_rate=0.05)
     with pytest.raises(ConfigurationError, match=words):
         Simulation.from_positions(tube, places, **others)  # type: ignore[arg-type]
@@ -364,7 +346,6 @@ def command(*words: object, **options: object) -> "subprocess.CompletedProcess[s
 
 
 def test_python_and_the_command_line_go_on_from_each_other(tmp_path: Path) -> None:
-    """PYTHON, high 5: one checkpoint."""
     out = tmp_path / "run"
     settings = [word for key in ("tube.waves=2", "run.periods=2", "run.seed=3") for word in ("--set", key)]
     made = command("run", "--preset", "frictionless-fine", *settings, "--out", out, "--quiet")
@@ -386,7 +367,6 @@ def test_python_and_the_command_line_go_on_from_each_other(tmp_path: Path) -> No
 
 
 def test_the_command_answers_exit_codes_and_stops_on_request(tmp_path: Path) -> None:
-    """PYTHON, high 5: no console script in the wheel."""
     assert "frictionless-fine" in command("presets").stdout
     assert command("run", "--no-such-option").returncode == 2
     assert command("check", "--preset", "frictionless", "--set", "drive.width=-1").returncode == 2
@@ -404,7 +384,6 @@ def test_the_command_answers_exit_codes_and_stops_on_request(tmp_path: Path) -> 
 
 
 def test_pictures_are_shown_by_notebooks_and_written(tight: Simulation, tmp_path: Path) -> None:
-    """PYTHON, high 5: no `render` on a simulation."""
     tight.run(periods=2)
     for view in ("side", "section", "space-time"):
         picture = tight.render(tmp_path / f"{view}.png", view=view, width=200 if view != "space-time" else None)

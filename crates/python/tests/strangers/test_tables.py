@@ -22,7 +22,6 @@ def table(small: Simulation) -> Table:
 
 
 def test_any_pandas_takes_a_table(table: Table) -> None:
-    """PYTHON, medium 6."""
     frame = table.to_pandas()
     assert list(frame.columns) == table.column_names and len(frame) == len(table)
     assert frame.attrs["units"]["time"] == "t" and "J along the wave" in frame.attrs["descriptions"]["flow_rate"]
@@ -33,7 +32,6 @@ def test_any_pandas_takes_a_table(table: Table) -> None:
 
 
 def test_polars_xarray_and_arrow_take_a_table(table: Table) -> None:
-    """PYTHON, medium 6; what would delight: `.to_xarray()` with units."""
     assert table.to_polars().equals(polars.DataFrame(table))
     assert pyarrow.table(table).schema.field("time").metadata[b"unit"] == b"t"
     data = table.to_xarray()
@@ -43,13 +41,11 @@ def test_polars_xarray_and_arrow_take_a_table(table: Table) -> None:
 
 
 def test_columns_that_do_not_rise_are_no_dimension(small: Simulation) -> None:
-    """PYTHON, medium 6."""
     small.run(periods=3)
     assert small.waves().to_xarray().sizes == {"row": 6}
 
 
 def test_a_table_is_read_as_a_frame_is(table: Table) -> None:
-    """PYTHON, medium 10: no `.keys`, iterating raised."""
     assert list(table) == table.keys() == table.column_names == [name for name, _ in table.items()]
     assert all(np.array_equal(column, table[name]) for name, column in dict(table).items())
     assert len(table.values()) == len(table.to_dict()) == len(table.keys())
@@ -57,14 +53,12 @@ def test_a_table_is_read_as_a_frame_is(table: Table) -> None:
 
 
 def test_a_table_is_pickled_and_copied(table: Table) -> None:
-    """PYTHON, medium 10."""
     for other in (pickle.loads(pickle.dumps(table)), copy.copy(table), copy.deepcopy(table)):
         assert other == table and isinstance(other, Table)
         assert (other.units, other.descriptions, other.metadata) == (table.units, table.descriptions, table.metadata)
 
 
 def test_missing_numbers_and_texts_survive() -> None:
-    """PYTHON, medium 10."""
     columns = [
         ("name", "", "its name", ["one", "two"]),
         ("tau", "t", "its time", np.array([1.0, np.nan])),
@@ -80,14 +74,12 @@ def test_missing_numbers_and_texts_survive() -> None:
 
 
 def test_a_table_says_its_units_in_words_and_in_a_notebook(table: Table) -> None:
-    """PYTHON, medium 10."""
     assert repr(table).startswith("<peristalsis.Table: 40 rows of time [t], period, flow_rate [1/t]")
     shown = table._repr_html_()
     assert "time [t]" in shown and shown.count("<tr>") == 12 and "&hellip;" in shown
 
 
 def test_the_rows_of_a_study_are_such_a_table(tmp_path: object) -> None:
-    """PYTHON, medium 6: studies as well."""
     content = {"name": "widths", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 2}}
     study = peristalsis.study(content, store=f"{tmp_path}/store")
     study.run(workers=1)

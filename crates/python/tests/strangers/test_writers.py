@@ -40,7 +40,6 @@ def frames(path: Path) -> int:
 
 @pytest.mark.parametrize("ending", ["gsd", "vtp", "lammpstrj", "parquet"])
 def test_frames_come_when_they_are_due(tight: Simulation, tmp_path: Path, ending: str) -> None:
-    """PYTHON, high 5: writers with triggers."""
     plain = tight.copy()
     path = tmp_path / f"run.{ending}"
     writer = Writer(path, every=0.5)
@@ -60,7 +59,6 @@ def test_frames_come_when_they_are_due(tight: Simulation, tmp_path: Path, ending
 
 
 def test_frames_hold_the_grains(tight: Simulation, tmp_path: Path) -> None:
-    """PYTHON, high 5: `sim.write`."""
     tight.run(periods=1)
     grains = len(tight.positions)
     for ending in ("gsd", "lammpstrj", "parquet"):
@@ -76,7 +74,6 @@ def test_frames_hold_the_grains(tight: Simulation, tmp_path: Path) -> None:
 
 
 def test_mdanalysis_reads_the_text_of_lammps(tight: Simulation, tmp_path: Path) -> None:
-    """PYTHON, medium 13."""
     writer = tight.add_writer(tmp_path / "run.lammpsdump", every=0.25)
     tight.run(periods=1)
     universe = MDAnalysis.Universe(tmp_path / "run.lammpsdump", dt=tight.configuration.time_step)
@@ -90,7 +87,6 @@ def test_mdanalysis_reads_the_text_of_lammps(tight: Simulation, tmp_path: Path) 
 
 
 def test_instants_and_times(tight: Simulation, tmp_path: Path) -> None:
-    """PYTHON, high 5: `at=`."""
     writer = tight.add_writer(tmp_path / "at.parquet", at=[0, 0.5, "30t"])
     tight.run(periods=2)
     times = pandas.read_parquet(writer.path)["time"].unique()
@@ -105,7 +101,6 @@ def test_instants_and_times(tight: Simulation, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", ["gsd", "vtp", "lammpstrj", "parquet"])
 def test_files_are_whole_after_ctrl_c(tight: Simulation, tmp_path: Path, ending: str) -> None:
-    """PYTHON, high 5: files complete after Ctrl-C."""
     writer = tight.add_writer(tmp_path / f"run.{ending}", every=0.1)
     timer = threading.Timer(0.5, _thread.interrupt_main)
     timer.start()

@@ -217,7 +217,7 @@ mod tests {
         }
     }
 
-    /// COMMAND-LINE, low: T_g had no unit.
+    /// T_g had no unit.
     #[test]
     fn the_temperature_is_in_units_of_the_wave() {
         let bin = |position: f64| ProfileBin {

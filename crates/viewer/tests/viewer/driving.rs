@@ -209,7 +209,7 @@ fn a_slider_does_not_lead_what_a_schedule_leads_nor_a_wave_that_stands() {
     assert!(welcome["ranges"]["width"].is_null());
 }
 
-/// VIEWER, critical 3: three drags of a slider lie between the mark and the time that is shown.
+/// Three drags of a slider lie between the mark and the time that is shown.
 #[test]
 fn going_back_steers_again_as_it_was_steered() {
     let served = Served::small();
@@ -238,7 +238,7 @@ fn going_back_steers_again_as_it_was_steered() {
     assert_eq!(between[0].head["aims"]["width"], 2.65);
 }
 
-/// VIEWER, high 5: where a slider leads is said at once, also while nothing is computed.
+/// Where a slider leads is said at once, also while nothing is computed.
 #[test]
 fn a_slider_that_is_moved_while_the_run_rests_shows_where_it_leads() {
     let served = Served::small();
@@ -248,7 +248,7 @@ fn a_slider_that_is_moved_while_the_run_rests_shows_where_it_leads() {
     assert_eq!(frame.head["driven"]["width"], 2.6);
 }
 
-/// VIEWER, medium 14: only the page that saves is told.
+/// Only the page that saves is told.
 #[test]
 fn a_save_is_told_to_who_asked() {
     let served = Served::small();
@@ -265,7 +265,7 @@ fn a_save_is_told_to_who_asked() {
     assert_eq!(seen.count(), 5);
 }
 
-/// VIEWER, high 8: who comes later can go back as well.
+/// Who comes later can go back as well.
 #[test]
 fn frames_from_before_come_after_the_welcome() {
     let served = Served::small();

@@ -254,7 +254,7 @@ fn a_trajectory_that_is_cut_short_plays_as_far_as_it_goes() {
     assert_eq!(frame(&mut client, 0).head["number"], 0);
 }
 
-/// COMMAND-LINE, medium 6: the warnings of a played recording were empty.
+/// The warnings of a played recording were empty.
 #[test]
 fn a_recording_has_the_warnings_of_its_run() {
     let settings = [

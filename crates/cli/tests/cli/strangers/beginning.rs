@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::{Place, read_json};
 
-/// COMMAND-LINE, medium 9: the first guess of how to say the length of a run.
+/// The first guess of how to say the length of a run.
 #[test]
 fn the_length_of_a_run_is_an_option_of_its_own() {
     let place = Place::new();
@@ -25,7 +25,7 @@ fn the_length_of_a_run_is_an_option_of_its_own() {
     place.refuses("run --periods 3", &["give a FILE or a --preset"]);
 }
 
-/// COMMAND-LINE, low: sizes that took a minute, or all memory, before they were refused.
+/// Sizes that took a minute, or all memory, before they were refused.
 #[test]
 fn sizes_beyond_reach_are_refused_before_anything_is_made() {
     let place = Place::new();
@@ -50,7 +50,7 @@ fn sizes_beyond_reach_are_refused_before_anything_is_made() {
     assert!(place.inventory().is_empty());
 }
 
-/// COMMAND-LINE, low: `check` of a tube of very many grains took minutes.
+/// `check` of a tube of very many grains took minutes.
 #[test]
 fn a_wide_tube_is_tried_in_a_narrower_one() {
     let place = Place::new();
@@ -80,7 +80,7 @@ fn stopped_while_packing(mut child: Child) -> (Option<i32>, String) {
 /// Grains whose packing takes many seconds.
 const MANY: &str = "--preset frictionless grains.number=400000 tube.waves=20000";
 
-/// COMMAND-LINE, low: Ctrl-C while a million grains were packed printed nothing.
+/// Ctrl-C while a million grains were packed printed nothing.
 #[cfg(unix)]
 #[test]
 fn packing_that_is_stopped_says_so_and_leaves_nothing() {
@@ -114,7 +114,6 @@ fn view_says_that_it_packs_and_ends_well_while_it_does() {
     assert_eq!(code, Some(0), "{said}");
 }
 
-/// COMMAND-LINE, low: the same in a study.
 #[cfg(unix)]
 #[test]
 fn a_study_that_is_stopped_while_it_packs_ends_soon() {
@@ -133,7 +132,7 @@ fn a_study_that_is_stopped_while_it_packs_ends_soon() {
     place.does("study status kept").shows(&["1 run: 1 pending"]);
 }
 
-/// COMMAND-LINE, high 1: two programs went on with one folder at once.
+/// Two programs went on with one folder at once.
 #[cfg(unix)]
 #[test]
 fn a_run_that_is_worked_on_is_not_gone_on_with_by_another_program() {
@@ -165,7 +164,7 @@ fn a_run_that_is_worked_on_is_not_gone_on_with_by_another_program() {
     assert!(names.into_iter().all(|name| !name.contains("lock")));
 }
 
-/// COMMAND-LINE, wanted: replicates that are complete are left as they are.
+/// Replicates that are complete are left as they are.
 #[test]
 fn complete_replicates_that_are_gone_on_with_are_not_written_again() {
     let place = Place::new();
@@ -180,7 +179,7 @@ fn complete_replicates_that_are_gone_on_with_are_not_written_again() {
     assert!(place.path("many/seed-1/timeseries.csv").is_file());
 }
 
-/// COMMAND-LINE, low: pictures of a tube of extreme shape took minutes, or all memory.
+/// Pictures of a tube of extreme shape took minutes, or all memory.
 #[test]
 fn pictures_of_extreme_tubes_are_of_usual_size() {
     let place = Place::new();

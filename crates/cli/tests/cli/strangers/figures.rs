@@ -2,7 +2,7 @@
 
 use crate::Place;
 
-/// COMMAND-LINE, low: one sample was a line of one point, which cannot be seen.
+/// One sample was a line of one point, which cannot be seen.
 #[test]
 fn one_sample_is_seen_in_the_figure_of_the_flow() {
     let place = Place::new();
@@ -17,7 +17,7 @@ fn one_sample_is_seen_in_the_figure_of_the_flow() {
     assert!(colour("0.05") > 0 && colour("0.1") == 0);
 }
 
-/// COMMAND-LINE, low: T_g had no unit, and tau meant the shear on the wall beside the time of the transition.
+/// T_g had no unit, and tau meant the shear on the wall beside the time of the transition.
 #[test]
 fn a_profile_names_its_units_and_no_symbol_twice() {
     let place = Place::new();
@@ -32,7 +32,7 @@ fn a_profile_names_its_units_and_no_symbol_twice() {
     assert!(!svg.contains("τ"));
 }
 
-/// COMMAND-LINE, medium 7: folders that the report speaks of were not there.
+/// Folders that the report speaks of were not there.
 #[test]
 fn a_report_has_the_folders_that_it_promises() {
     let place = Place::new();

@@ -1,5 +1,4 @@
-//! What strangers met who tried the program: each row of their reports as a test. The rows on the Python package are in
-//! `crates/python/tests/strangers`.
+//! What users met who tried the program. What they met in the Python package is in `crates/python/tests/strangers`.
 
 mod beginning;
 mod figures;

@@ -33,7 +33,6 @@ fn assert_same_run(place: &Place, folders: [&str; 2]) {
     assert_eq!(one, other);
 }
 
-/// COMMAND-LINE, high 1.
 #[test]
 fn runs_that_begin_at_once_have_a_folder_each() {
     let place = Place::new();
@@ -56,7 +55,6 @@ fn runs_that_begin_at_once_have_a_folder_each() {
     assert_eq!(seeds, [1, 2, 3, 4, 5, 6]);
 }
 
-/// COMMAND-LINE, high 1.
 #[test]
 fn of_runs_that_begin_at_once_in_one_folder_one_gets_it() {
     let place = Place::new();
@@ -75,7 +73,7 @@ fn of_runs_that_begin_at_once_in_one_folder_one_gets_it() {
     );
 }
 
-/// COMMAND-LINE, low: the user's own `flow.png`.
+/// The user's own `flow.png`.
 #[test]
 fn a_file_of_the_user_that_a_run_would_write_over_is_refused() {
     for name in ["flow.png", "snapshot.svg", "timeseries.csv"] {
@@ -104,7 +102,6 @@ fn a_resume_that_is_refused_changes_nothing() {
     assert!(kept() == before);
 }
 
-/// COMMAND-LINE, medium 3 and 10.
 #[cfg(unix)]
 #[test]
 fn a_run_can_be_gone_on_with_from_its_first_step_after_a_kill() {
@@ -123,7 +120,6 @@ fn a_run_can_be_gone_on_with_from_its_first_step_after_a_kill() {
     );
 }
 
-/// COMMAND-LINE, medium 3.
 #[cfg(unix)]
 #[test]
 fn a_disk_that_fills_with_frames_within_the_first_minute_leaves_a_state_and_a_true_promise() {
@@ -138,7 +134,7 @@ fn a_disk_that_fills_with_frames_within_the_first_minute_leaves_a_state_and_a_tr
     assert_same_run(&place, ["stopped", "through"]);
 }
 
-/// PYTHON, high 4: GNU `timeout` signals the program and then its group; and COMMAND-LINE, medium 10: a lost connection.
+/// GNU `timeout` signals the program and then its group; and a lost connection.
 #[cfg(unix)]
 #[test]
 fn signals_that_come_twice_at_once_and_a_lost_connection_end_a_run_with_its_state() {
@@ -161,7 +157,6 @@ fn signals_that_come_twice_at_once_and_a_lost_connection_end_a_run_with_its_stat
     }
 }
 
-/// COMMAND-LINE, medium 10.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_run_under_nohup_outlives_its_terminal() {
@@ -182,7 +177,6 @@ fn a_run_under_nohup_outlives_its_terminal() {
     assert_eq!(code, Some(0), "{said}");
 }
 
-/// COMMAND-LINE, medium 4.
 #[test]
 fn a_table_that_a_run_left_is_renewed_when_it_goes_on() {
     let place = Place::new();
@@ -193,7 +187,6 @@ fn a_table_that_a_run_left_is_renewed_when_it_goes_on() {
     assert_same_run(&place, ["on", "whole"]);
 }
 
-/// COMMAND-LINE, medium 9.
 #[test]
 fn a_complete_run_is_lengthened_to_the_run_that_was_asked_for_at_once() {
     for (preset, settings) in [
@@ -239,7 +232,6 @@ fn a_complete_run_is_lengthened_to_the_run_that_was_asked_for_at_once() {
     }
 }
 
-/// COMMAND-LINE, medium 9.
 #[test]
 fn a_run_of_a_static_wave_is_lengthened_by_its_duration() {
     let place = Place::new();
@@ -256,7 +248,6 @@ fn a_run_of_a_static_wave_is_lengthened_by_its_duration() {
     place.refuses("run --resume on --duration 20", &["has done 30 t already"]);
 }
 
-/// COMMAND-LINE, medium 9.
 #[test]
 fn a_window_of_frames_that_a_longer_run_goes_on_with_ends_where_it_was_asked_to() {
     let place = Place::new();
@@ -272,7 +263,6 @@ fn a_window_of_frames_that_a_longer_run_goes_on_with_ends_where_it_was_asked_to(
     place.assert_same(["beyond", "five"], &["trajectory.gsd"]);
 }
 
-/// COMMAND-LINE, medium 9.
 #[test]
 fn figures_are_drawn_again_to_the_same_bytes() {
     let place = Place::new();
@@ -292,7 +282,7 @@ fn figures_are_drawn_again_to_the_same_bytes() {
     place.refuses("figures nowhere", &["nowhere holds no run"]);
 }
 
-/// PYTHON, high 5: what either program saves, the other goes on with.
+/// What either program saves, the other goes on with.
 #[test]
 fn a_state_in_a_file_goes_on_in_a_new_folder() {
     let place = Place::new();
@@ -319,7 +309,6 @@ fn a_state_in_a_file_goes_on_in_a_new_folder() {
     );
 }
 
-/// COMMAND-LINE, wanted: `runs list`.
 #[test]
 fn runs_are_listed_with_what_came_out() {
     let place = Place::new();
@@ -356,7 +345,7 @@ fn runs_are_listed_with_what_came_out() {
     assert_eq!(damaged[2]["status"], "unreadable");
 }
 
-/// COMMAND-LINE, wanted: `run --seeds` with the scatter shown.
+/// `run --seeds` with the scatter shown.
 #[test]
 fn seeds_run_side_by_side_and_their_scatter_is_shown() {
     let place = Place::new();
@@ -454,7 +443,7 @@ fn runs_tell_what_a_schedule_leads_and_lengths_of_few_digits() {
     assert!(drawn.contains("2.5 to 2.9"), "the title of its figure");
 }
 
-/// COMMAND-LINE, wanted: replicates that are stopped go on, those that had not begun included.
+/// Replicates that are stopped go on, those that had not begun included.
 #[cfg(unix)]
 #[test]
 fn seeds_that_were_stopped_go_on_to_the_same_runs() {
@@ -478,7 +467,6 @@ fn seeds_that_were_stopped_go_on_to_the_same_runs() {
     }
 }
 
-/// COMMAND-LINE, medium 5.
 #[test]
 fn the_error_says_what_it_is_an_error_of_and_rounding_is_none() {
     let place = Place::new();
@@ -492,7 +480,7 @@ fn the_error_says_what_it_is_an_error_of_and_rounding_is_none() {
     );
 }
 
-/// COMMAND-LINE, medium 8 and low: `trajectory` into a run, a damaged trajectory, threads that change nothing.
+/// `trajectory` into a run, a damaged trajectory, threads that change nothing.
 #[test]
 fn what_would_write_into_a_run_or_go_on_with_a_damaged_one_is_refused() {
     let place = Place::new();
@@ -515,7 +503,6 @@ fn what_would_write_into_a_run_or_go_on_with_a_damaged_one_is_refused() {
     place.refuses("run SMALL --threads none", &["auto"]);
 }
 
-/// COMMAND-LINE, low: messages.
 #[test]
 fn names_that_are_given_in_the_wrong_place_are_put_right() {
     let place = Place::new();

@@ -14,7 +14,6 @@ fn keys(report: &Value) -> Vec<&str> {
         .collect()
 }
 
-/// COMMAND-LINE, high 2.
 #[test]
 fn thresholds_of_the_whole_range_that_the_schema_allows_run_from_either_start() {
     let place = Place::new();
@@ -36,7 +35,7 @@ fn thresholds_of_the_whole_range_that_the_schema_allows_run_from_either_start() 
     );
 }
 
-/// COMMAND-LINE, high 2: back flow crosses a threshold below 0 on the way down.
+/// Back flow crosses a threshold below 0 on the way down.
 #[test]
 fn a_threshold_below_zero_is_crossed_by_back_flow() {
     let place = Place::new();
@@ -50,7 +49,6 @@ fn a_threshold_below_zero_is_crossed_by_back_flow() {
     }
 }
 
-/// COMMAND-LINE, medium 6.
 #[test]
 fn leaks_and_overlaps_are_the_same_warnings_in_run_and_summary_and_check_foretells_them() {
     let place = Place::new();
@@ -84,7 +82,7 @@ fn leaks_and_overlaps_are_the_same_warnings_in_run_and_summary_and_check_foretel
     }
 }
 
-/// COMMAND-LINE, medium 6: seeds side by side say it once.
+/// Seeds side by side say it once.
 #[test]
 fn seeds_side_by_side_warn_once_of_a_kind() {
     let dense = "run --preset frictionless grains.volume_fraction=0.99 tube.waves=2 run.periods=1";
@@ -93,7 +91,6 @@ fn seeds_side_by_side_warn_once_of_a_kind() {
     assert_eq!(seeds.stderr.matches(key).count(), 1, "{}", seeds.stderr);
 }
 
-/// COMMAND-LINE, medium 6: the README's first run.
 #[test]
 fn overlaps_without_units_are_warned_of() {
     let place = Place::new();
@@ -104,7 +101,7 @@ fn overlaps_without_units_are_warned_of() {
     assert!(keys(&summary).contains(&"drive.strain_rate"), "{summary:#}");
 }
 
-/// COMMAND-LINE, wanted: e, contact time, steps per contact, memory and packing time in `check`; low: rounded numbers.
+/// Restitution, contact time, steps per contact, memory and packing time, in rounded numbers.
 #[test]
 fn check_tells_restitution_contacts_memory_and_packing_in_rounded_numbers() {
     let place = Place::new();
@@ -131,7 +128,7 @@ fn check_tells_restitution_contacts_memory_and_packing_in_rounded_numbers() {
     assert!((asked["restitution"].as_f64().unwrap() - 0.8).abs() < 1e-6);
 }
 
-/// COMMAND-LINE, wanted: restitution as an input, with a record that repeats the run to the same bits.
+/// Restitution as an input, with a record that repeats the run to the same bits.
 #[test]
 fn a_run_by_restitution_is_repeated_from_its_record() {
     let place = Place::new();
@@ -144,7 +141,7 @@ fn a_run_by_restitution_is_repeated_from_its_record() {
     );
 }
 
-/// COMMAND-LINE, wanted: `check -` from standard input.
+/// `check -` from standard input.
 #[test]
 fn a_configuration_is_read_from_standard_input() {
     let place = Place::new();
@@ -173,7 +170,6 @@ fn a_configuration_is_read_from_standard_input() {
         .says(&["standard input:3:1", "drive.width"]);
 }
 
-/// COMMAND-LINE, low: messages.
 #[test]
 fn messages_say_one_thing_once_and_in_few_digits() {
     let place = Place::new();
@@ -212,7 +208,6 @@ fn messages_say_one_thing_once_and_in_few_digits() {
     assert_eq!(wrong.matches("wrong.toml").count(), 1, "{wrong}");
 }
 
-/// COMMAND-LINE, low: 200,000 unknown keys.
 #[test]
 fn of_very_many_problems_the_first_are_shown() {
     let place = Place::new();
@@ -225,7 +220,7 @@ fn of_very_many_problems_the_first_are_shown() {
     assert!(refused.stderr.len() < 20_000);
 }
 
-/// COMMAND-LINE, low: an empty study file and duplicate values name no line.
+/// An empty study file and duplicate values name no line.
 #[test]
 fn faults_of_a_study_file_name_their_lines() {
     let place = Place::new();

@@ -13,7 +13,7 @@ fn finished() -> Place {
     place
 }
 
-/// COMMAND-LINE, low: a study printed "transition at ... ± 0.025" for the values between which most runs change.
+/// A study printed "transition at ... ± 0.025" for the values between which most runs change.
 #[test]
 fn a_bracket_is_told_as_one() {
     let place = Place::new();
@@ -32,7 +32,7 @@ fn a_bracket_is_told_as_one() {
     );
 }
 
-/// COMMAND-LINE, low: a missing or junk file was answered with code 1 and "mend the disk", and not named.
+/// A missing or junk file was answered with code 1 and "mend the disk", and not named.
 #[test]
 fn files_that_cannot_be_imported_are_named_as_bad_input() {
     let place = finished();
@@ -53,7 +53,7 @@ fn files_that_cannot_be_imported_are_named_as_bad_input() {
     }
 }
 
-/// COMMAND-LINE, low: `nan` was taken, in study files and in tables of finished runs.
+/// `nan` was taken, in study files and in tables of finished runs.
 #[test]
 fn values_that_are_no_numbers_are_refused_with_their_place() {
     let place = finished();
@@ -95,7 +95,7 @@ fn values_that_are_no_numbers_are_refused_with_their_place() {
     }
 }
 
-/// COMMAND-LINE, low: archives, tables and pictures were overwritten without a word.
+/// Archives, tables and pictures were overwritten without a word.
 #[test]
 fn what_is_replaced_is_said() {
     let place = finished();
@@ -135,7 +135,7 @@ fn what_is_replaced_is_said() {
     }
 }
 
-/// COMMAND-LINE, low: the last frame was drawn for an instant beyond the end; a film was written under the name of a
+/// The last frame was drawn for an instant beyond the end; a film was written under the name of a
 /// picture.
 #[test]
 fn pictures_that_cannot_be_had_are_refused() {
@@ -153,7 +153,7 @@ fn pictures_that_cannot_be_had_are_refused() {
     );
 }
 
-/// COMMAND-LINE, low: a missing ffmpeg was told after the work, by then of 7 s.
+/// A missing ffmpeg was told after the work, by then of 7 s.
 #[test]
 fn a_missing_ffmpeg_is_told_before_any_work() {
     let place = Place::new();
@@ -166,7 +166,7 @@ fn a_missing_ffmpeg_is_told_before_any_work() {
     assert!(!said.message().contains("frame 1"), "{}", said.message());
 }
 
-/// COMMAND-LINE, medium 7: the report named no authors, and its "Again" line left out `--only`.
+/// The report named no authors, and its "Again" line left out `--only`.
 #[test]
 fn a_report_names_its_source_and_how_to_make_it_again() {
     let place = Place::new();
