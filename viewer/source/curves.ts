@@ -1,6 +1,6 @@
 import type { Chart, Ink } from "./charts";
 import { colourAt, css } from "./fields";
-import { LIGHTNESS } from "./heat";
+import { SEQUENTIAL } from "./messages";
 import type { Point, Value } from "./results";
 
 /** A curve: the points of one start and one member of the family. */
@@ -42,7 +42,7 @@ export function curvesOf(points: Point[], members: (Value | null)[], starts: str
   members.forEach((member, place) => {
     // Not to the ends of the scale, which are hard to see on one of the pages.
     const part = members.length > 1 ? place / (members.length - 1) : 0.25;
-    const colour = css(colourAt(LIGHTNESS, dark ? 0.42 + 0.58 * part : 0.78 * part));
+    const colour = css(colourAt(SEQUENTIAL, dark ? 0.42 + 0.58 * part : 0.78 * part));
     for (const start of starts) {
       const own = points.filter((point) => point.other === member && point.start === start);
       if (own.length === 0) continue;

@@ -1,6 +1,6 @@
 import { written } from "./charts";
-import { type Colour, colourAt, css, type Field, stops } from "./fields";
-import { FORCE } from "./messages";
+import { colourAt, css, type Field, stops } from "./fields";
+import { type Colour, FORCE } from "./messages";
 import { element } from "./page";
 
 /** The colours of the grains, or that there are none, by lightness alone or with marks for the sign, and those of the forces up to the largest. */

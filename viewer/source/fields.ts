@@ -1,5 +1,5 @@
 import { written } from "./charts";
-import { GRAINS_COVERED, MOST_CONTACTS } from "./messages";
+import { type Colour, CYCLIC, DIVERGING, GRAINS_COVERED, MOST_CONTACTS, SEQUENTIAL } from "./messages";
 import type { Frame, Welcome } from "./protocol";
 
 /** A quantity that colours grains. */
@@ -73,10 +73,14 @@ export const FIELDS: Record<string, Field> = {
   },
   size: {
     name: "diameter",
-    ends: ["0.8 d", "1 d"],
+    ends: ["", ""],
     diverging: false,
     values(frame, _, into) {
-      for (let i = 0; i < into.length; i++) into[i] = (frame.diameter[i] - 0.8) / 0.2;
+      const sizes = frame.diameter.slice(0, into.length).sort();
+      let [least, largest] = [sizes[0], sizes[sizes.length - 1]];
+      if (!(largest > least)) [least, largest] = [least - 0.5, largest + 0.5];
+      this.ends = [`${written(least)} d`, `${written(largest)} d`];
+      for (let i = 0; i < into.length; i++) into[i] = (frame.diameter[i] - least) / (largest - least);
     },
   },
   coordination: {
@@ -139,15 +143,6 @@ export function inWave(frame: Frame, tube: Welcome, z: number): number {
   return position - Math.floor(position);
 }
 
-export type Colour = [number, number, number];
-/** Blue, white, red: equal steps of lightness on both sides. */
-const BLUE_RED: Colour[] = [[20, 70, 160], [110, 165, 215], [246, 244, 240], [240, 140, 105], [165, 15, 30]];
-/** Light rises from end to end, for every eye. */
-const BLUE_YELLOW: Colour[] = [[0, 34, 88], [64, 82, 108], [123, 123, 120], [187, 169, 108], [253, 234, 95]];
-const SEQUENTIAL: Colour[] = [[48, 18, 90], [38, 92, 150], [36, 150, 140], [130, 200, 90], [250, 230, 60]];
-/** Its end is its begin. */
-const ROUND: Colour[] = [[226, 217, 226], [98, 118, 186], [47, 20, 54], [178, 84, 82], [226, 217, 226]];
-
 /** Each grain's place on the scale of a field, from 0 to 1; no number where it has none. */
 export function partsOf(field: Field, frame: Frame, tube: Welcome, into = new Float32Array(frame.grains)): Float32Array {
   field.values(frame, tube, into);
@@ -155,11 +150,10 @@ export function partsOf(field: Field, frame: Frame, tube: Welcome, into = new Fl
   return into;
 }
 
-/** The scale of colours of a field. */
+/** The scale of colours of a field; by lightness one whose light rises from end to end, for every eye. */
 export function stops(field: Field, lightness: boolean): Colour[] {
-  if (field.cyclic) return ROUND;
-  if (lightness) return BLUE_YELLOW;
-  return field.diverging ? BLUE_RED : SEQUENTIAL;
+  if (field.cyclic) return CYCLIC;
+  return field.diverging && !lightness ? DIVERGING : SEQUENTIAL;
 }
 
 /** Colour at a place from 0 to 1 of a scale. */

@@ -1,11 +1,7 @@
 import { type Chart, type Ink, textOf, written } from "./charts";
-import { type Colour, colourAt, css } from "./fields";
+import { colourAt, css } from "./fields";
+import { type Colour, SEQUENTIAL } from "./messages";
 import type { Point, Value } from "./results";
-
-/** Light rises from end to end, so that order is seen without hue. */
-export const LIGHTNESS: Colour[] = [
-  [37, 16, 84], [52, 56, 130], [42, 98, 146], [30, 138, 143], [62, 175, 120], [142, 205, 80], [246, 226, 74],
-];
 
 /** A cell of the map. */
 export interface Cell {
@@ -67,7 +63,7 @@ export function drawHeat(chart: Chart, points: Point[], rows: (Value | null)[], 
     });
   });
   for (const { point, left, top, width, height: high } of cells) {
-    const colour = colourAt(LIGHTNESS, placeIn(scale, point.value));
+    const colour = colourAt(SEQUENTIAL, placeIn(scale, point.value));
     context.fillStyle = css(colour);
     const within: Box = [left + 0.5, top + 0.5, Math.max(1, width - 1), Math.max(1, high - 1)];
     context.fillRect(...within);

@@ -1,7 +1,8 @@
 import { ink, textOf, written } from "./charts";
 import { type Curve, mark, type Style } from "./curves";
 import { colourAt, css } from "./fields";
-import { LIGHTNESS, type Scale } from "./heat";
+import type { Scale } from "./heat";
+import { SEQUENTIAL } from "./messages";
 
 function head(box: HTMLElement, text: string): void {
   const title = document.createElement("h2");
@@ -14,7 +15,7 @@ export function showScale(box: HTMLElement, value: string, { from, to, logarithm
   head(box, value);
   const bar = document.createElement("div");
   bar.className = "bar";
-  bar.style.background = `linear-gradient(90deg, ${Array.from({ length: 12 }, (_, k) => css(colourAt(LIGHTNESS, k / 11))).join(",")})`;
+  bar.style.background = `linear-gradient(90deg, ${Array.from({ length: 12 }, (_, k) => css(colourAt(SEQUENTIAL, k / 11))).join(",")})`;
   const ends = document.createElement("div");
   ends.className = "ends";
   const middle = logarithmic ? Math.sqrt(from * to) : 0.5 * (from + to);

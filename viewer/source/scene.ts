@@ -2,8 +2,8 @@ import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Ink } from "./charts";
 import { Bands, ForceScale, type Images } from "./bands";
-import { type Colour, colourAt, type Field, partsOf, stops } from "./fields";
-import { SHRUNK, STONE } from "./messages";
+import { colourAt, type Field, partsOf, stops } from "./fields";
+import { type Colour, SHRUNK, STONE } from "./messages";
 import type { Frame, Welcome } from "./protocol";
 import { drawn, Side, Spheres, type Uniforms } from "./spheres";
 

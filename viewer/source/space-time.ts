@@ -1,5 +1,6 @@
 import { type Chart, type Ink, written } from "./charts";
-import { type Colour, colourAt, css, FIELDS, stops } from "./fields";
+import { colourAt, css, FIELDS, stops } from "./fields";
+import type { Colour } from "./messages";
 import { insideOf } from "./inside";
 import { type Frame, timeAxis, type Welcome } from "./protocol";
 

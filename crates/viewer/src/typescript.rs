@@ -89,15 +89,13 @@ fn constants() -> String {
         ("FORCES_COVERED", drawn::FORCES_COVERED.to_string()),
         ("GRAINS_COVERED", drawn::GRAINS_COVERED.to_string()),
         ("MOST_CONTACTS", drawn::MOST_CONTACTS.to_string()),
-        (
-            "FORCE: [number, number, number][]",
-            format!("{:?}", drawn::force_colours()),
-        ),
     ]
     .map(|(name, value)| format!("export const {name} = {value};\n"));
+    let palettes = drawn::palettes()
+        .map(|(name, colours)| format!("export const {name}: Colour[] = {colours:?};\n"));
     format!(
         "// What crates/run/src/scene/drawn.rs says of each.\n{}",
-        lines.concat()
+        lines.concat() + "export type Colour = [number, number, number];\n" + &palettes.concat()
     )
 }
 

@@ -15,8 +15,16 @@ pub const GRAINS_COVERED: f64 = 0.98;
 /// Contacts that most grains have fewer than, where the colours end.
 pub const MOST_CONTACTS: f64 = 12.0;
 
-/// Colours of forces from weak to strong, in equal steps, in sRGB.
-pub fn force_colours() -> [[u8; 3]; 5] {
-    let scale = ColourScale::new("", 0.0, 1.0).palette(Palette::Force);
-    [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| scale.srgb(part))
+/// The palettes of pictures by name: colours in equal steps, in sRGB.
+pub fn palettes() -> [(&'static str, Vec<[u8; 3]>); 4] {
+    let colours = |palette, number: u32| {
+        let scale = ColourScale::new("", 0.0, f64::from(number - 1)).palette(palette);
+        (0..number).map(|k| scale.srgb(k.into())).collect()
+    };
+    [
+        ("DIVERGING", colours(Palette::Diverging, 9)),
+        ("SEQUENTIAL", colours(Palette::Sequential, 11)),
+        ("CYCLIC", colours(Palette::Cyclic, 9)),
+        ("FORCE", colours(Palette::Force, 5)),
+    ]
 }
