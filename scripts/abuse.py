@@ -31,7 +31,7 @@ from pathlib import Path
 REPOSITORY = Path(__file__).resolve().parent.parent
 SECONDS = 6
 CODES = {0, 1, 2, 129, 130, 138, 143}
-PRESETS = ("frictionless", "frictionless-fine", "frictional")
+PRESETS = sorted(path.stem for path in (REPOSITORY / "crates/configuration/presets").glob("*.toml"))
 SMALL = ("grains.number=12", "tube.waves=2", "run.periods=1")
 STUDY = """name = "abused"
 preset = "frictionless"

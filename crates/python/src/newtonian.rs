@@ -1,7 +1,7 @@
 //! The Newtonian reference, point by point over arrays.
 
 use numpy::{AllowTypeChange, IntoPyArray, PyArray1, PyArrayDyn, PyArrayLikeDyn, PyReadonlyArray1};
-use peristalsis_physics::newtonian::{NewtonianPeristalsis, Trapping, trapping_threshold};
+use peristalsis_physics::newtonian::{NewtonianPeristalsis, trapping_threshold};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
@@ -224,10 +224,7 @@ impl Newtonian {
     /// (0.0, True)
     #[getter]
     fn trapped_volume_fraction(&self) -> f64 {
-        match self.flow.trapping() {
-            Trapping::Absent => 0.0,
-            Trapping::Bolus(region) | Trapping::Ring(region) => region.volume_fraction,
-        }
+        self.flow.trapping().map_or(0.0, |(_, volume)| volume)
     }
 
     /// Volume fraction of the fluid near the wall that moves back on average: 0 without any.

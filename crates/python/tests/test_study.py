@@ -28,7 +28,7 @@ def test_a_study_from_its_plan_to_its_rows(tmp_path: Path) -> None:
     rows = polars.DataFrame(study.rows())
     assert len(rows) == 4
     # A run of the study is the run of its configuration.
-    simulation = peristalsis.Simulation.from_configuration(plan[0].configuration)
+    simulation = peristalsis.Simulation(plan[0].configuration)
     simulation.run()
     row = dict(zip(rows.columns, rows.rows()[0], strict=True))
     assert row["flow_rate_ratio"] == simulation.summary()["flow_rate_ratio"]

@@ -250,14 +250,16 @@ impl<'a> Row<'a> {
         self.number("radius")
     }
 
-    /// k_n of two grains; that of the presets, 1, where the study does not vary it.
+    /// k_n of two grains; that of the presets where the study does not vary it.
     pub(crate) fn stiffness(&self) -> f64 {
-        self.number_or("contact.normal_stiffness", 1.0)
+        let of_presets = LinearSpringDashpot::default().normal_stiffness;
+        self.number_or("contact.normal_stiffness", of_presets)
     }
 
-    /// eta_n of two grains; that of the presets, 0.00548, where the study does not vary it.
+    /// eta_n of two grains; that of the presets where the study does not vary it.
     pub(crate) fn damping(&self) -> f64 {
-        self.number_or("contact.normal_damping", 0.00548)
+        let of_presets = LinearSpringDashpot::default().normal_damping;
+        self.number_or("contact.normal_damping", of_presets)
     }
 
     /// Of two equal grains.

@@ -16,11 +16,7 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
             "0 <= width <= 2 radius; a finite radius and pressure",
         )
     })?;
-    let (kind, region) = match fluid.trapping() {
-        Trapping::Absent => ("", None),
-        Trapping::Bolus(region) => ("a bolus on the axis", Some(region)),
-        Trapping::Ring(region) => ("a ring off the axis", Some(region)),
-    };
+    let trapping = fluid.trapping();
     let reflux = fluid.reflux();
     if arguments.json {
         let report = serde_json::json!({
@@ -30,15 +26,18 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
             "flow_rate_ratio": fluid.flow_rate_ratio(),
             "zero_flow_pressure": fluid.zero_flow_pressure(),
             "efficiency": fluid.efficiency(),
-            "trapped_volume_fraction": region.map(|region| region.volume_fraction),
+            "trapped_volume_fraction": trapping.map(|(_, volume)| volume),
             "reflux_volume_fraction": reflux.map(|layer| layer.volume_fraction),
             "reflux_flow_rate": reflux.map(|layer| layer.flow_rate),
         });
         return print_json(&report);
     }
-    let trapping = region.map_or("none".to_owned(), |region| {
-        let part = 100.0 * region.volume_fraction;
-        format!("{kind}, {part:.2} % of the fluid")
+    let trapping = trapping.map_or("none".to_owned(), |(kind, volume)| {
+        let kind = match kind {
+            Trapping::Bolus => "a bolus on the axis",
+            Trapping::Ring => "a ring off the axis",
+        };
+        format!("{kind}, {:.2} % of the fluid", 100.0 * volume)
     });
     let reflux = reflux.map_or("none".to_owned(), |layer| {
         let (part, flow) = (100.0 * layer.volume_fraction, layer.flow_rate);

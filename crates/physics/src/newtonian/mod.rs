@@ -21,7 +21,7 @@ mod reflux;
 mod trapping;
 
 pub use reflux::RefluxLayer;
-pub use trapping::{TrappedRegion, Trapping, trapping_threshold};
+pub use trapping::{Trapping, trapping_threshold};
 
 use std::f64::consts::{PI, TAU};
 

@@ -13,7 +13,7 @@
 
 use super::NewtonianPeristalsis;
 use super::quadrature::{integrate, sign_change};
-use super::trapping::Shape;
+use super::trapping::Trapping;
 use std::f64::consts::PI;
 
 /// The fluid that moves back on average: the layer between the wall and one streamline.
@@ -39,7 +39,7 @@ impl NewtonianPeristalsis {
             return None;
         }
         // A stagnation point holds the particles near it for ever: T diverges and U ends positive.
-        let everywhere = self.trapped_shape().is_none() && self.transit_excess(depth) <= 0.0;
+        let everywhere = self.kind_of_trapping().is_none() && self.transit_excess(depth) <= 0.0;
         let layer = if everywhere {
             RefluxLayer {
                 stream_function: 0.0,
@@ -65,9 +65,9 @@ impl NewtonianPeristalsis {
     /// Height in Psi, above the wall, of the streamlines that fall behind the wave.
     fn wall_layer_height(&self) -> f64 {
         let to_axis = -0.5 * self.wave_frame_flow_rate();
-        match self.trapped_shape() {
-            Some(Shape::Ring) => to_axis + self.largest_stream_function_in_throat(),
-            None | Some(Shape::Bolus) => to_axis,
+        match self.kind_of_trapping() {
+            Some(Trapping::Ring) => to_axis + self.largest_stream_function_in_throat(),
+            None | Some(Trapping::Bolus) => to_axis,
         }
     }
 

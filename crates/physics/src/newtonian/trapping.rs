@@ -2,41 +2,20 @@
 
 use super::NewtonianPeristalsis;
 use super::quadrature::{integrate, sign_change};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
-/// The fluid that a peristaltic wave traps.
+/// How a peristaltic wave traps fluid.
 ///
 /// The velocity of the wave frame on the axis, 1 + 2q/h^2, changes sign where h^2 = -2q. Since q = Q - 1 - phi^2/2, it
-/// does so somewhere in the tube exactly when |Q - 1/2| < phi, at every P.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// does so somewhere in the tube exactly when |Q - 1/2| < phi, at every P. At Q <= 1/2 - phi, and without a wave, every
+/// particle falls behind the wave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trapping {
-    /// Q <= 1/2 - phi (or no wave at all): every particle falls behind the wave.
-    Absent,
     /// 1/2 - phi < Q <= 1/2 + phi: a bolus round the axis, with a stagnation point at either end.
-    Bolus(TrappedRegion),
+    Bolus,
     /// Q > 1/2 + phi, which takes a pressure that falls along the wave: the fluid on the axis overtakes the wave all
     /// along the tube, and the closed streamlines form a ring between this core and the fluid at the wall.
-    Ring(TrappedRegion),
-}
-
-/// Shape of the trapped fluid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shape {
-    Bolus,
     Ring,
-}
-
-/// Extent of the trapped fluid of one wavelength.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TrappedRegion {
-    /// Distance from the belly to either end, in lambda; 1/2 for a ring, which touches its neighbours in the throats.
-    pub half_length: f64,
-    /// Inner radius in the belly, in a; 0 for a bolus.
-    pub inner_radius: f64,
-    /// Outer radius in the belly, in a.
-    pub outer_radius: f64,
-    /// Trapped volume over the volume of the tube, 0 ... 1.
-    pub volume_fraction: f64,
 }
 
 /// Amplitude ratio at which a bolus first appears on the axis at the pressure rise P.
@@ -62,49 +41,41 @@ pub fn trapping_threshold(pressure: f64) -> Option<f64> {
 }
 
 impl NewtonianPeristalsis {
-    /// The trapped fluid: where it is and how much.
+    /// How fluid is trapped, and its volume over that of the tube, 0 ... 1; `None` where none is.
     ///
     /// Closed streamlines are those of Psi > Psi_0, with Psi_0 = 0 (the axis) for a bolus and Psi_0 = max_r Psi in the
     /// throat for a ring. Volumes by quadrature, to about 1e-12.
-    pub fn trapping(&self) -> Trapping {
-        let Some(shape) = self.trapped_shape() else {
-            return Trapping::Absent;
-        };
-        let ratio = self.amplitude_ratio;
-        let end_angle = match shape {
-            Shape::Ring => PI,
-            Shape::Bolus => {
-                let stagnation_radius = (-2.0 * self.wave_frame_flow_rate()).max(0.0).sqrt();
-                libm::acos(((stagnation_radius - 1.0) / ratio).clamp(-1.0, 1.0))
-            }
-        };
-        let volume = integrate(0.0, end_angle, |angle| {
-            let (inner, outer) = self.trapped_areas(1.0 + ratio * libm::cos(angle), shape);
+    pub fn trapping(&self) -> Option<(Trapping, f64)> {
+        let kind = self.kind_of_trapping()?;
+        let volume = integrate(0.0, self.end_of_trapping(kind), |angle| {
+            let wall = 1.0 + self.amplitude_ratio * libm::cos(angle);
+            let (inner, outer) = self.trapped_areas(wall, kind);
             outer - inner
         }) / PI;
-        let (inner, outer) = self.trapped_areas(1.0 + ratio, shape);
-        let region = TrappedRegion {
-            half_length: end_angle / TAU,
-            inner_radius: inner.sqrt(),
-            outer_radius: outer.sqrt(),
-            volume_fraction: volume / self.mean_area(),
-        };
-        match shape {
-            Shape::Bolus => Trapping::Bolus(region),
-            Shape::Ring => Trapping::Ring(region),
+        Some((kind, volume / self.mean_area()))
+    }
+
+    /// Phase from the belly to either end of the trapped fluid; pi for a ring, which touches its neighbours in the throats.
+    fn end_of_trapping(&self, kind: Trapping) -> f64 {
+        match kind {
+            Trapping::Ring => PI,
+            Trapping::Bolus => {
+                let stagnation_radius = (-2.0 * self.wave_frame_flow_rate()).max(0.0).sqrt();
+                libm::acos(((stagnation_radius - 1.0) / self.amplitude_ratio).clamp(-1.0, 1.0))
+            }
         }
     }
 
-    /// Shape of the trapped fluid by the criterion on Q alone; `None` where no fluid is trapped.
-    pub(super) fn trapped_shape(&self) -> Option<Shape> {
+    /// By the criterion on Q alone.
+    pub(super) fn kind_of_trapping(&self) -> Option<Trapping> {
         let ratio = self.amplitude_ratio;
         let excess = self.flow_rate() - 0.5;
         if ratio == 0.0 || excess <= -ratio {
             None
         } else if excess <= ratio {
-            Some(Shape::Bolus)
+            Some(Trapping::Bolus)
         } else {
-            Some(Shape::Ring)
+            Some(Trapping::Ring)
         }
     }
 
@@ -112,16 +83,16 @@ impl NewtonianPeristalsis {
     ///
     /// With lead A = q + h^2 and Psi = (A - h^2/2) s - A s^2/2, the streamline Psi_0 is at
     /// s = [A - h^2/2 -+ sqrt((A - h^2/2)^2 - 2 A Psi_0)]/A.
-    fn trapped_areas(&self, wall: f64, shape: Shape) -> (f64, f64) {
+    fn trapped_areas(&self, wall: f64, kind: Trapping) -> (f64, f64) {
         let area = wall * wall;
         let lead = self.wave_frame_flow_rate() + area;
         let axial = lead - 0.5 * area;
         if axial <= 0.0 {
             return (0.0, 0.0);
         }
-        let edge = match shape {
-            Shape::Bolus => 0.0,
-            Shape::Ring => self.largest_stream_function_in_throat(),
+        let edge = match kind {
+            Trapping::Bolus => 0.0,
+            Trapping::Ring => self.largest_stream_function_in_throat(),
         };
         let root = (axial * axial - 2.0 * lead * edge).max(0.0).sqrt();
         let scale = area / lead;
@@ -146,6 +117,20 @@ mod tests {
     use super::super::tests::{flow, wave_frame_velocity};
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::TAU;
+
+    /// Half the length of the trapped fluid, and its inner and outer radius in the belly.
+    fn extent(flow: &NewtonianPeristalsis, kind: Trapping) -> (f64, f64, f64) {
+        let (inner, outer) = flow.trapped_areas(1.0 + flow.amplitude_ratio, kind);
+        (flow.end_of_trapping(kind) / TAU, inner.sqrt(), outer.sqrt())
+    }
+
+    /// The trapped volume of a flow that traps in this way.
+    fn trapped(flow: &NewtonianPeristalsis, kind: Trapping) -> f64 {
+        let (found, volume_fraction) = flow.trapping().unwrap();
+        assert_eq!(found, kind, "{flow:?}");
+        volume_fraction
+    }
 
     /// Whether the velocity on the axis, in the wave frame, takes both signs along the tube.
     fn stagnates_on_the_axis(flow: &NewtonianPeristalsis) -> bool {
@@ -175,11 +160,8 @@ mod tests {
     #[test]
     fn free_pumping_traps_above_four_less_the_root_of_fourteen() {
         let threshold = 4.0 - 14.0_f64.sqrt();
-        assert_eq!(flow(threshold - 1e-9, 0.0).trapping(), Trapping::Absent);
-        assert!(matches!(
-            flow(threshold + 1e-9, 0.0).trapping(),
-            Trapping::Bolus(_)
-        ));
+        assert_eq!(flow(threshold - 1e-9, 0.0).trapping(), None);
+        trapped(&flow(threshold + 1e-9, 0.0), Trapping::Bolus);
     }
 
     #[test]
@@ -201,27 +183,24 @@ mod tests {
 
     #[test]
     fn no_wave_traps_nothing_and_a_closed_throat_traps_everything() {
-        assert_eq!(flow(0.0, -3.0).trapping(), Trapping::Absent);
-        assert_eq!(flow(0.0, 0.0).trapping(), Trapping::Absent);
-        let Trapping::Bolus(all) = flow(1.0, 0.0).trapping() else {
-            panic!("a closed throat holds a bolus");
-        };
-        assert!((all.volume_fraction - 1.0).abs() < 1e-12);
-        assert_eq!((all.half_length, all.outer_radius), (0.5, 2.0));
+        assert_eq!(flow(0.0, -3.0).trapping(), None);
+        assert_eq!(flow(0.0, 0.0).trapping(), None);
+        let closed = flow(1.0, 0.0);
+        assert!((trapped(&closed, Trapping::Bolus) - 1.0).abs() < 1e-12);
+        assert_eq!(extent(&closed, Trapping::Bolus), (0.5, 0.0, 2.0));
     }
 
     #[test]
     fn a_particle_in_the_bolus_stays_and_its_neighbour_outside_leaves() {
         let flow = flow(0.5, 0.0);
-        let Trapping::Bolus(bolus) = flow.trapping() else {
-            panic!("phi = 0.5 traps at P = 0");
-        };
-        let mut inside = [0.25, 0.97 * bolus.outer_radius];
-        let mut outside = [0.25, 1.03 * bolus.outer_radius];
+        trapped(&flow, Trapping::Bolus);
+        let (half_length, _, radius) = extent(&flow, Trapping::Bolus);
+        let mut inside = [0.25, 0.97 * radius];
+        let mut outside = [0.25, 1.03 * radius];
         for _ in 0..40_000 {
             inside = pathline::advance(&flow, inside, 5e-4);
             outside = pathline::advance(&flow, outside, 5e-4);
-            assert!((inside[0] - 0.25).abs() < bolus.half_length, "{inside:?}");
+            assert!((inside[0] - 0.25).abs() < half_length, "{inside:?}");
         }
         assert!(outside[0] < -5.0, "{outside:?}");
     }
@@ -229,12 +208,11 @@ mod tests {
     #[test]
     fn a_particle_in_the_ring_stays_and_those_on_both_sides_leave() {
         let flow = flow(0.3, -1.5);
-        let Trapping::Ring(ring) = flow.trapping() else {
-            panic!("the core overtakes the wave");
-        };
-        let mut inside = [0.25, ring.inner_radius + 0.05];
-        let mut core = [0.25, ring.inner_radius - 0.05];
-        let mut wall = [0.25, ring.outer_radius + 0.05];
+        trapped(&flow, Trapping::Ring);
+        let (_, inner, outer) = extent(&flow, Trapping::Ring);
+        let mut inside = [0.25, inner + 0.05];
+        let mut core = [0.25, inner - 0.05];
+        let mut wall = [0.25, outer + 0.05];
         for _ in 0..40_000 {
             inside = pathline::advance(&flow, inside, 5e-4);
             core = pathline::advance(&flow, core, 5e-4);
@@ -249,27 +227,25 @@ mod tests {
     fn trapped_volume_by_counting() {
         for (ratio, pressure) in [(0.3, 0.0), (0.5, 0.0), (0.7, 1.5), (0.2, -0.6)] {
             let flow = flow(ratio, pressure);
-            let Trapping::Bolus(bolus) = flow.trapping() else {
-                panic!("{flow:?} must trap");
-            };
-            let counted = counted_fraction(&flow, 0.0);
+            let (found, counted) = (
+                trapped(&flow, Trapping::Bolus),
+                counted_fraction(&flow, 0.0),
+            );
             assert!(
-                (bolus.volume_fraction - counted).abs() < 2e-3,
-                "{flow:?}: {bolus:?}, {counted}"
+                (found - counted).abs() < 2e-3,
+                "{flow:?}: {found}, {counted}"
             );
         }
         for (ratio, pressure) in [(0.3, -1.5), (0.1, -3.0)] {
             let flow = flow(ratio, pressure);
-            let Trapping::Ring(ring) = flow.trapping() else {
-                panic!("{flow:?} must overtake the wave");
-            };
+            let found = trapped(&flow, Trapping::Ring);
             let edge = (0..10_000)
                 .map(|k| flow.stream_function(f64::from(k) * 1e-4 * (1.0 - ratio), 0.75))
                 .fold(0.0, f64::max);
             let counted = counted_fraction(&flow, edge);
             assert!(
-                (ring.volume_fraction - counted).abs() < 2e-3,
-                "{flow:?}: {ring:?}, {counted}"
+                (found - counted).abs() < 2e-3,
+                "{flow:?}: {found}, {counted}"
             );
         }
     }
@@ -277,18 +253,16 @@ mod tests {
     #[test]
     fn the_edge_of_the_bolus_is_the_streamline_of_the_axis() {
         let flow = flow(0.5, 0.2);
-        let Trapping::Bolus(bolus) = flow.trapping() else {
-            panic!("must trap");
-        };
-        let areas = |position| flow.trapped_areas(flow.wall_radius(position), Shape::Bolus);
+        let (half_length, _, _) = extent(&flow, Trapping::Bolus);
+        let areas = |position| flow.trapped_areas(flow.wall_radius(position), Trapping::Bolus);
         for offset in [0.0, 0.5, -0.9] {
-            let position = 0.25 + offset * bolus.half_length;
+            let position = 0.25 + offset * half_length;
             let (inner, outer) = areas(position);
             assert!(inner == 0.0 && outer > 0.0);
             assert!(flow.stream_function(outer.sqrt(), position).abs() < 1e-13);
         }
-        assert_eq!(areas(0.25 + 1.01 * bolus.half_length), (0.0, 0.0));
-        let end = 0.25 + bolus.half_length;
+        assert_eq!(areas(0.25 + 1.01 * half_length), (0.0, 0.0));
+        let end = 0.25 + half_length;
         assert!(wave_frame_velocity(&flow, 0.0, end).abs() < 1e-12);
     }
 
@@ -301,12 +275,12 @@ mod tests {
             let flow = flow(ratio, pressure);
             // At the very limits the scan of the axis has too few points to decide.
             prop_assume!(((flow.flow_rate() - 0.5).abs() - ratio).abs() > 1e-4);
-            let bolus = matches!(flow.trapping(), Trapping::Bolus(_));
+            let bolus = matches!(flow.trapping(), Some((Trapping::Bolus, _)));
             prop_assert_eq!(bolus, stagnates_on_the_axis(&flow));
-            if let Trapping::Bolus(region) | Trapping::Ring(region) = flow.trapping() {
-                prop_assert!(region.volume_fraction > 0.0 && region.volume_fraction < 1.0);
-                prop_assert!(region.inner_radius < region.outer_radius);
-                prop_assert!(region.outer_radius < 1.0 + ratio);
+            if let Some((kind, volume_fraction)) = flow.trapping() {
+                prop_assert!(volume_fraction > 0.0 && volume_fraction < 1.0);
+                let (_, inner, outer) = extent(&flow, kind);
+                prop_assert!(inner < outer && outer < 1.0 + ratio);
             }
         }
     }

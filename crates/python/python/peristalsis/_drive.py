@@ -8,8 +8,13 @@ from weakref import WeakSet
 from ._given import number
 from ._state import State
 
-#: Parameters of the drive, which may change during a run.
-CHANGEABLE = ("width", "force_amplitude", "strain_rate")
+#: Parameters of the drive, which may change during a run: words, symbol and unit.
+PARAMETERS = {
+    "width": ("width of the bottleneck", "w", "d"),
+    "force_amplitude": ("force amplitude", r"f^{\mathrm{P}}", "m d/t^2"),
+    "strain_rate": ("strain rate", r"\dot{\varepsilon}", "1/t"),
+}
+CHANGEABLE = tuple(PARAMETERS)
 
 
 class View(Protocol):

@@ -10,6 +10,7 @@ import numpy as np
 from . import _core
 from ._arrays import Array
 from ._core import AnalysisError, Table
+from ._drive import PARAMETERS
 from ._given import alike
 from ._progress import Progress, Shown
 from ._warnings import Telling
@@ -19,8 +20,6 @@ if TYPE_CHECKING:
 
     #: Parameters of the drive that a ramp can lead.
     _Parameter: TypeAlias = Literal["width", "force_amplitude", "strain_rate"]
-
-_UNITS = {"width": "d", "force_amplitude": "m d/t^2", "strain_rate": "1/t"}
 
 
 class Threshold(NamedTuple):
@@ -148,7 +147,7 @@ class Loop:
         return Table(
             [
                 ("branch", "", "there or back", list(self.branch)),
-                ("value", _UNITS[self.parameter], self.parameter, self.value),
+                ("value", PARAMETERS[self.parameter][2], self.parameter, self.value),
                 ("flow_rate_ratio", "1", "late mean of J/Jmax at this level", self.flow_rate_ratio),
                 ("flow_rate_ratio_error", "1", "its standard error", self.flow_rate_ratio_error),
             ]

@@ -170,34 +170,6 @@ class Made(Output):
         return cls(Configuration(text=text_of(path), name=os.fspath(path), overrides=settings))
 
     @classmethod
-    def from_configuration(cls, configuration: Configuration) -> Self:
-        """A configuration that has been resolved: the same as ``Simulation(configuration)``.
-
-        Parameters
-        ----------
-        configuration : Configuration
-            What to run.
-
-        Returns
-        -------
-        Simulation
-            At its first step.
-
-        Raises
-        ------
-        DoesNotFitError
-            Where the tube does not hold the grains.
-
-        Examples
-        --------
-        >>> import peristalsis
-        >>> tube = peristalsis.Configuration("frictionless-fine", waves=2, strain_rate=0.05)
-        >>> peristalsis.Simulation.from_configuration(tube).steps
-        0
-        """
-        return cls(configuration)
-
-    @classmethod
     def from_positions(
         cls,
         configuration: Configuration,

@@ -15,6 +15,7 @@ from ._given import number, positive, whole
 from ._loop import Loop, ramp
 from ._made import Made
 from ._progress import Progress, Shown
+from ._tables import facts_to_html
 from ._warnings import PeristalsisWarning, Telling, outside
 from ._writers import Trigger, Writer, held, listed, triggers
 
@@ -331,10 +332,5 @@ class Simulation(Made):
         return f"<peristalsis.Simulation: {facts}>{doubts}"
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
-            f"<td style='text-align:left'>{html.escape(fact)}</td></tr>"
-            for name, fact in self._facts().items()
-        )
         doubts = "".join(f"<p>warning: {html.escape(str(warning))}</p>" for warning in self.warnings)
-        return f"<table><caption>peristalsis.Simulation</caption>{rows}</table>{doubts}"
+        return facts_to_html("peristalsis.Simulation", self._facts().items()) + doubts

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import numpy.typing as npt
 
+from ._arrays import Array
 from ._given import of_kind
 from ._simulation import Simulation
 from ._fit import set_title
@@ -20,8 +21,6 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-Array = npt.NDArray[np.float64]
 
 #: Blue against the wave, white at rest, red along it (after ColorBrewer's RdBu), as in the figures of the command line.
 DIVERGING = LinearSegmentedColormap.from_list(

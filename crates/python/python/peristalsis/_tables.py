@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._drive import CHANGEABLE
+
 if TYPE_CHECKING:
     import pandas
     import polars
@@ -113,7 +115,7 @@ def configuration_reduced(configuration: Configuration) -> tuple[type[Configurat
 def configuration_text(configuration: Configuration) -> str:
     """A configuration in a line."""
     drive = configuration["drive"]
-    driven = [f"{name} {drive[name]:g}" for name in ("width", "force_amplitude", "strain_rate") if name in drive]
+    driven = [f"{name} {drive[name]:g}" for name in CHANGEABLE if name in drive]
     doubts = [f"{len(configuration.warnings)} warnings"] if configuration.warnings else []
     grains = f"{configuration.grains} grains in {configuration.waves} waves"
     return f"<peristalsis.Configuration: {', '.join([grains, *driven, f'seed {configuration.seed}', *doubts])}>"

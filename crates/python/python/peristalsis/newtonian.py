@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from ._arrays import Array
 from ._core import Newtonian, trapping_threshold
 from ._given import numeric
 
@@ -18,8 +19,6 @@ __all__ = ["Newtonian", "field", "flow_rate_ratio", "trapping_threshold"]
 
 def __dir__() -> list[str]:
     return sorted(__all__)
-
-Array = npt.NDArray[np.float64]
 
 
 def flow_rate_ratio(

@@ -17,6 +17,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import newtonian
+from ._arrays import Array
+from ._drive import PARAMETERS
 from ._given import of_kind
 from ._simulation import Simulation
 from ._snapshot import snapshot
@@ -50,17 +52,10 @@ __all__ = [
 def __dir__() -> list[str]:
     return sorted(__all__)
 
-Array = npt.NDArray[np.float64]
-
 BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY = COLOURS
 _RATIO = r"flow rate, $J/J_{\mathrm{max}}$"
 _PHASE = r"position in the wave frame, $(z - ct)/\lambda$"
 _WIDTH = r"width of the bottleneck, $w/d$"
-#: Words, symbol and unit of what else a loop goes along.
-_PARAMETERS = {
-    "strain_rate": ("strain rate", r"\dot{\varepsilon}", "1/t"),
-    "force_amplitude": ("force amplitude", r"f^{\mathrm{P}}", "m d/t^2"),
-}
 #: Words and symbol of a column of the profile, its colour, and what it is drawn in where that is not its unit.
 _COLUMNS = {
     "density": ("grains per length", "n_1", BLUE),
@@ -404,9 +399,9 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
 
 def _parameter(loop: Loop) -> str:
     """Words and symbol of what a loop goes along, in the units of its law of contact."""
-    if loop.parameter not in _PARAMETERS:
+    if loop.parameter == "width":
         return _WIDTH
-    words, symbol, per = _PARAMETERS[loop.parameter]
+    words, symbol, per = PARAMETERS[loop.parameter]
     return f"{words}, ${symbol}/[{unit_of(loop.law, per)}]$"
 
 

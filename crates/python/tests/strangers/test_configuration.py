@@ -60,7 +60,7 @@ def test_values_are_replaced(configuration: Configuration) -> None:
     changed = {key for key in configuration if configuration[key] != other[key]}
     assert changed == {"drive.width", "run.seed"} and other["drive.width"] == 2.5
     assert configuration.replace({"drive.amplitude": 0.25})["drive.width"] == 2.5
-    assert Simulation.from_configuration(other).width == 2.5
+    assert Simulation(other).width == 2.5
     with pytest.raises(ConfigurationError, match="drive.width"):
         configuration.replace(width=-1)
 

@@ -262,7 +262,7 @@ def test_steps_and_seeds_that_cannot_be(tight: Simulation) -> None:
 def test_a_generator_of_numpy_is_a_seed_that_is_written_down() -> None:
     one, other = (Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=np.random.default_rng(5)) for _ in range(2))
     assert one.configuration == other.configuration and one.configuration["run.seed"] > 1000
-    assert np.array_equal(Simulation.from_configuration(one.configuration).positions, other.positions)
+    assert np.array_equal(Simulation(one.configuration).positions, other.positions)
 
 
 def test_several_callbacks_each_with_its_steps(tight: Simulation) -> None:
@@ -312,7 +312,7 @@ def test_placed_grains_stay_in_order_and_say_that_no_file_repeats_them(tmp_path:
     assert sim.diameters.tolist() == [1.0, 0.8, 0.9] and sim.configuration["grains.number"] == 3
     assert sim.configuration["initial.state"] == "placed"
     with pytest.raises(ConfigurationError, match="go on from a checkpoint"):
-        Simulation.from_configuration(sim.configuration)
+        Simulation(sim.configuration)
     sim.run(periods=1)
     sim.save(tmp_path / "placed")
     again = Simulation.load(tmp_path / "placed")
