@@ -632,17 +632,20 @@ class Summary(_Rare):
     seed: int
     """seed of the random numbers"""
     status: Literal["complete", "settled", "running", "diverged"]
-    """complete, or settled: ended early, after its transition"""
+    """complete; settled: ended early, after its transition; of a run, not of a row: interrupted, or diverged"""
     grains: int
     """N"""
     time: float
-    """time reached: where a run without a transition is censored [t]"""
+    """time reached [t]"""
     periods: float
     """wavelengths that the wave has run"""
     transition_time: float | None
     """time of the transition, tau; missing where there was none [t]"""
     censored: bool
     """whether the run ended before a transition"""
+    watched: float | None
+    """time up to which a transition is found, 2.5 periods before the end: where a run without one is censored;
+    missing where no transition can be told [t]"""
     transition_threshold: float
     """J/Jmax whose crossing counts as the transition"""
     flow_rate_ratio: float
