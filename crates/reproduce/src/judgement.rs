@@ -38,6 +38,17 @@ pub(crate) fn all_hold(parts: &[Option<bool>]) -> Option<bool> {
     parts.iter().all(Option::is_some).then_some(true)
 }
 
+/// The same with a last part, which takes long and is asked only where the others do not decide.
+pub(crate) fn all_hold_with(
+    parts: &[Option<bool>],
+    last: impl FnOnce() -> Option<bool>,
+) -> Option<bool> {
+    match all_hold(parts) {
+        Some(false) => Some(false),
+        rest => all_hold(&[rest, last()]),
+    }
+}
+
 /// At which strain rates, or other values of a parameter, a claim holds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rates {

@@ -232,7 +232,17 @@ impl<'a, T: AtRate<'a>> OnWall<T> {
         number: String,
         why: String,
     ) -> Part {
-        let holds = judge(self);
+        self.part_judged(judge(self), judge, number, why)
+    }
+
+    /// The same where the answer for the whole is known.
+    pub(crate) fn part_judged(
+        &self,
+        holds: Option<bool>,
+        judge: impl Fn(&Self) -> Option<bool>,
+        number: String,
+        why: String,
+    ) -> Part {
         let rates = self.tight().map(|one| one.strain_rate);
         let without = rates.filter(|_| holds.is_some()).map(|rate| {
             let is_other = |one: &&Rc<Shown<T>>| one.strain_rate != rate;

@@ -168,7 +168,6 @@ fn a_feed_that_finds_no_place_is_told() {
     }
 }
 
-/// Grains in the gaps of the wall are farther out than where they would touch a smooth one.
 #[test]
 fn mixing_and_segregation_do_not_depend_on_the_numbers_of_the_grains() {
     let settings = "tube.waves=2 run.periods=3 drive.width=2.6";
@@ -212,4 +211,17 @@ fn a_run_that_is_led_past_its_end_has_a_configuration_that_repeats_it() {
     assert_eq!(&read, told);
     let again = finish(Run::new(read).unwrap());
     assert_eq!(run.simulation().bodies(), again.simulation().bodies());
+}
+
+/// A numerical auditor: on a wall without spheres every grain that touched it was refused.
+#[test]
+fn grains_may_touch_a_smooth_wall_of_no_thickness() {
+    let settings = "tube.waves=2 run.periods=2 tube.arrangement=smooth wall.sphere_diameter=0";
+    let run = finish(Run::new(configuration("frictionless", settings)).unwrap());
+    let bodies = run.simulation().bodies();
+    let places = &bodies.position[..bodies.grains];
+    let touching = run.simulation().touching();
+    assert!(touching.iter().any(|it| it.second >= bodies.grains));
+    let still = vec![DVec3::ZERO; places.len()];
+    moving(settings, places, &still).unwrap();
 }

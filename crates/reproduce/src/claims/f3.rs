@@ -49,16 +49,10 @@ fn collapsed_of(one: &OnWall<Line<'_>>) -> Option<Collapsed> {
     collapse(one, EXPONENTS, |ensemble| Some(ensemble.fit?.mean))
 }
 
-/// Whether both halves hold; the collapse, which takes long, is sought where the other half does not decide.
-fn holds(one: &OnWall<Line<'_>>) -> Option<bool> {
+/// Whether both halves hold.
+fn holds(one: &OnWall<Line<'_>>, collapses: impl FnOnce() -> Option<bool>) -> Option<bool> {
     let scales = power_of(one).and_then(|power| agrees(&power, AMPLITUDE));
-    if scales == Some(false) {
-        return scales;
-    }
-    all_hold(&[
-        scales,
-        collapsed_of(one).as_ref().and_then(Collapsed::agrees),
-    ])
+    all_hold_with(&[scales], collapses)
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
@@ -85,7 +79,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             let (found, chance) = (collapsed.in_words(), collapsed.chance());
             PROSE.text("collapse", values!(found, chance))
         });
-        parts.push(one.part(holds, words, why));
+        let all = holds(&one, || collapsed.as_ref().and_then(Collapsed::agrees));
+        let judge = |one: &OnWall<Line<'_>>| holds(one, || collapsed_of(one)?.agrees());
+        parts.push(one.part_judged(all, judge, words, why));
         amplitudes.push((one.name.clone(), known));
         found.extend(collapsed.map(|collapsed| (one.name, collapsed)));
     }

@@ -72,16 +72,11 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>, collapsed: Option<&Collapsed>
     let (half, chance) = (said(all.hold()), cell_of(collapsed, Collapsed::chance));
     let why = PROSE.text("why", values!(half, words, scaling, chance));
     let number = PROSE.text("number", values!(exponent, power));
-    // The collapse, which takes long, is sought where the rest does not decide.
-    let holds = |one: &OnWall<Line<'_>>| {
+    let judge = |one: &OnWall<Line<'_>>| {
         let rest = [judged(one).hold(), agrees_power(one)];
-        if rest.contains(&Some(false)) {
-            return Some(false);
-        }
-        let collapses = collapsed_of(one).as_ref().and_then(Collapsed::agrees);
-        all_hold(&[rest[0], rest[1], collapses])
+        all_hold_with(&rest, || collapsed_of(one)?.agrees())
     };
-    one.part(holds, number, why)
+    one.part_judged(all_hold(&[all.hold(), scales]), judge, number, why)
 }
 
 fn collapsed_of(one: &OnWall<Line<'_>>) -> Option<Collapsed> {

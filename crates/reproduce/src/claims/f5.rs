@@ -288,19 +288,19 @@ fn part(one: &OnWall<Moments>, collapsed: Option<&Collapsed>) -> Part {
         "why",
         values!(rates = rates_of_peak, grows, integral, scaling),
     );
-    // The collapse, which takes long, is sought where the rest does not decide.
-    let holds = |one: &OnWall<Moments>| {
+    let all = [
+        rates.hold(),
+        integrals.hold(),
+        collapsed.and_then(Collapsed::holds),
+    ];
+    let judge = |one: &OnWall<Moments>| {
         let rest = [
             one.rates(Moments::diverges).hold(),
             one.rates(Moments::grows_without_bound).hold(),
         ];
-        if rest.contains(&Some(false)) {
-            return Some(false);
-        }
-        let collapses = collapsed_of(one).as_ref().and_then(Collapsed::holds);
-        all_hold(&[rest[0], rest[1], collapses])
+        all_hold_with(&rest, || collapsed_of(one)?.holds())
     };
-    one.part(holds, words, why)
+    one.part_judged(all_hold(&all), judge, words, why)
 }
 
 /// Power of the number of waves with which the peak of the moment of J/Jmax goes, over the widths that most runs jam at.

@@ -297,6 +297,10 @@ mod tests {
         );
         let expected = ". With that stiffness multiply inlet.velocity, inlet.feed_rate by 0.5000, so that they stay the same in SI";
         assert_eq!(open, expected);
+        let elastic = "wall.drag=0.01 wall.spring_damping=0.01 initial.axial_velocity=0.01";
+        let elastic = scaled_with(&configuration("frictional", elastic), "modulus", Some(0.25));
+        let rates = "and wall.drag, wall.spring_damping, initial.axial_velocity by 0.5000";
+        assert!(elastic.contains(rates), "{elastic}");
     }
 
     #[test]
