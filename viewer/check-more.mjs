@@ -8,7 +8,7 @@ import { audit, everyLook } from "./audit.mjs";
 import { serveFiles, WEB } from "./check-web.mjs";
 import { widgetChecks } from "./check-widget.mjs";
 
-export function moreChecks({ serve, open, measured, until, shoot, pictures, pixels, desk, phone, program, runs }) {
+export function moreChecks({ serve, open, measured, until, shoot, pictures, pixels, withoutScript, desk, phone, program, runs }) {
   const fastest = async (page) => {
     await page.selectOption("#speed", "");
     await page.click("#play");
@@ -311,20 +311,7 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     // A link may lead to another time.
     await until(page, () => Math.abs(window.viewer.measured.clock - 2) < 0.1 && !window.viewer.measured.playing);
     // The first view is full of tube from side to side, however few its waves are.
-    const sides = await page.evaluate(() => {
-      const stage = document.getElementById("stage");
-      const copy = document.createElement("canvas");
-      [copy.width, copy.height] = [stage.width, stage.height];
-      const context = copy.getContext("2d", { willReadFrequently: true });
-      context.drawImage(stage, 0, 0);
-      const wide = Math.floor(0.03 * copy.width);
-      return [0, copy.width - wide].map((left) => {
-        const { data } = context.getImageData(left, 0, wide, copy.height);
-        let edges = 0;
-        for (let at = 4; at < data.length; at += 4) if (Math.abs(data[at + 1] - data[at - 3]) > 20) edges += 1;
-        return (4 * edges) / data.length;
-      });
-    });
+    const sides = [(await pixels(page, 0, 0.03)).edges, (await pixels(page, 0.97, 1)).edges];
     assert(sides.every((part) => part > 0.005), `edges cover ${sides} of the sides of the stage`);
     // Numbers have names and units; the flow is a mean, which is said.
     assert.match(await page.textContent(".flow"), /mean over the last period/);
@@ -441,11 +428,7 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     await shoot(page, "no-webgl");
     await audit(page, "a run without WebGL");
     await context.close();
-    const silent = await browser.newContext({ ...desk, javaScriptEnabled: false });
-    const text = await silent.newPage();
-    await text.goto(address);
-    assert.match(await text.innerText("noscript"), /does not run/);
-    await silent.close();
+    await withoutScript(browser, address, async (text) => assert.match(await text.innerText("noscript"), /does not run/));
     end();
   }
 
@@ -613,13 +596,11 @@ export function moreChecks({ serve, open, measured, until, shoot, pictures, pixe
     const [stage, slider] = [await small.locator("#stage").boundingBox(), await small.locator("#slider-width").boundingBox()];
     assert(slider.y - stage.y - stage.height < 200, "the slider is far below the tube");
     await closeSmall();
-    const silent = await browser.newContext({ ...desk, javaScriptEnabled: false });
-    const text = await silent.newPage();
-    await text.goto(address);
-    assert.match(await text.innerText("body"), /A wave runs along a tube/);
-    assert(await text.isVisible("footer noscript img"));
-    await shoot(text, "front-no-script");
-    await silent.close();
+    await withoutScript(browser, address, async (text) => {
+      assert.match(await text.innerText("body"), /A wave runs along a tube/);
+      assert(await text.isVisible("footer noscript img"));
+      await shoot(text, "front-no-script");
+    });
     end();
   }
 

@@ -6,7 +6,7 @@ import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { chromium } from "playwright-core";
+import { launched } from "./chromium.mjs";
 
 const [python, picture] = process.argv.slice(2);
 assert(python, "usage: node check-notebook.mjs PYTHON [PICTURE]");
@@ -31,10 +31,7 @@ const address = await new Promise((found, lost) => {
   });
   server.once("exit", () => lost(new Error(text)));
 });
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
+const browser = await launched();
 try {
   const page = await browser.newPage({ viewport: { width: 1440, height: 1100 } });
   page.setDefaultTimeout(60000);

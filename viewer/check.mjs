@@ -10,7 +10,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { parseArgs } from "node:util";
-import { chromium } from "playwright-core";
+import { launched } from "./chromium.mjs";
 import { everyLook } from "./audit.mjs";
 import { moreChecks } from "./check-more.mjs";
 import { thresholdChecks } from "./check-thresholds.mjs";
@@ -22,7 +22,6 @@ const { values, positionals } = parseArgs({
 });
 const [program] = positionals;
 const { pictures, only } = values;
-assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,numbersWithErrors,thresholds,web,many,more,links,open,lost,bare,numbers,studies,front,widget]");
 const saves = mkdtempSync(join(tmpdir(), "peristalsis-viewer-"));
 const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
@@ -102,15 +101,16 @@ const measured = (page) => page.evaluate(() => window.viewer.measured);
 const until = (page, condition, argument) => page.waitForFunction(condition, argument);
 const shoot = async (page, name) => pictures && page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true });
 
-/** Which parts of the stage are edges, and strongly coloured; and a number that changes with the picture. */
-const pixels = (page) =>
-  page.evaluate(() => {
+/** Which parts of the stage, between parts of its width, are edges, and strongly coloured; and a number that changes with the picture. */
+const pixels = (page, from = 0, to = 1) =>
+  page.evaluate(([from, to]) => {
     const stage = document.getElementById("stage");
     const copy = document.createElement("canvas");
     [copy.width, copy.height] = [stage.width, stage.height];
-    const context = copy.getContext("2d");
+    const context = copy.getContext("2d", { willReadFrequently: true });
     context.drawImage(stage, 0, 0);
-    const { data } = context.getImageData(0, 0, copy.width, copy.height);
+    const [left, right] = [from, to].map((part) => Math.floor(part * copy.width));
+    const { data } = context.getImageData(left, 0, right - left, copy.height);
     let [edges, coloured, sum] = [0, 0, 0];
     for (let at = 4; at < data.length; at += 4) {
       if (Math.abs(data[at + 1] - data[at - 3]) > 20) edges += 1;
@@ -118,7 +118,16 @@ const pixels = (page) =>
       sum = (31 * sum + data[at] + 7 * data[at + 2]) % 1000003;
     }
     return { edges: (4 * edges) / data.length, coloured: (4 * coloured) / data.length, sum };
-  });
+  }, [from, to]);
+
+/** What a page is without scripts. */
+async function withoutScript(browser, address, look) {
+  const context = await browser.newContext({ ...desk, javaScriptEnabled: false });
+  const page = await context.newPage();
+  await page.goto(address);
+  await look(page);
+  await context.close();
+}
 
 async function checkDriving(browser) {
   const { address, end } = await serve("frictionless", "--set", "tube.waves=4");
@@ -464,12 +473,10 @@ async function checkStudy(browser) {
   end();
 }
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
-const tools = { serve, record, open, measured, until, shoot, pictures, pixels, isTooWide, desk, phone, program, runs };
+const tools = { serve, record, open, measured, until, shoot, pictures, pixels, withoutScript, isTooWide, desk, phone, program, runs };
 const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, ...thresholdChecks, ...webChecks(tools), ...moreChecks(tools) };
+assert(program, `usage: node check.mjs PROGRAM [--pictures DIR] [--only ${Object.keys(checks)}]`);
+const browser = await launched();
 try {
   for (const [name, check] of Object.entries(checks)) {
     if (only !== undefined && !only.split(",").includes(name)) continue;
