@@ -151,7 +151,7 @@ pub(crate) fn flow_of(rows: &[Row<'_>]) -> Uncertain {
 }
 
 /// Whether replicates ended in two flows.
-fn is_split(rows: &[Row<'_>]) -> bool {
+pub(crate) fn is_split(rows: &[Row<'_>]) -> bool {
     let mut ratios: Vec<f64> = rows.iter().map(Row::flow_rate_ratio).collect();
     ratios.sort_by(f64::total_cmp);
     ratios.windows(2).any(|pair| pair[1] - pair[0] > SPLIT)

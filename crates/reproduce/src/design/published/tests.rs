@@ -1,4 +1,5 @@
-//! The published points are those of the rows; `GOLDEN=write cargo test -p peristalsis-reproduce --lib published` writes them anew.
+//! The published points, and the branches beside which the viewer draws one's own loop, are those of the rows;
+//! `GOLDEN=write cargo test -p peristalsis-reproduce --lib published` writes them anew (then `just viewer-bundle`).
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -8,31 +9,89 @@ use peristalsis_formats::{Table, Values, csv, parquet};
 use peristalsis_physics::wall::Arrangement;
 
 use super::*;
+use crate::branch::is_split;
 use crate::design::groups::{groups, unlike};
-use crate::row::{Row, rows_of};
+use crate::row::{Row, by_strain_rate, grouped, rows_of};
 use crate::thresholds::MOST_ESCAPED;
 use crate::{STUDIES, Size, StudyFile};
 
 #[test]
 fn the_published_points_are_those_of_the_rows() {
-    let crate_folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let read = |name: &str| {
-        let path = crate_folder.join(format!("../../validation/results/{name}.parquet"));
-        path.exists().then(|| parquet::read(&path).unwrap())
-    };
     let studies = STUDIES
         .iter()
         .filter_map(|study| Some((study, read(study.name)?)));
     let text = encoded(&points_of(&studies.collect::<Vec<_>>()));
-    let path = crate_folder.join("src/design/published.csv");
+    compare("src/design/published.csv", &text);
+    assert!(published().len() > 500, "{}", published().len());
+}
+
+#[test]
+fn the_published_branches_of_the_page_are_those_of_the_rows() {
+    let branches = [
+        ("frictionless", "branches-coarse", "width"),
+        ("frictionless-source", "branches-12x16", "width"),
+        ("frictionless-fine", "branches-fine", "width"),
+        ("frictional", "elastic-branches", "force_amplitude"),
+        ("friction", "back-flow", "contact.kinetic_friction"),
+    ]
+    .map(|(of, study, across)| {
+        let curves = curves(&read(study).unwrap(), across).join(",");
+        format!("\"{of}\":[{curves}]")
+    });
+    let text = format!("{{{}}}\n", branches.join(","));
+    compare("../../viewer/source/ghosts.json", &text);
+}
+
+/// The rows of a study in the repository.
+fn read(study: &str) -> Option<Table> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/results");
+    let path = folder.join(format!("{study}.parquet"));
+    path.exists().then(|| parquet::read(&path).unwrap())
+}
+
+/// Compares a file of the repository with what it should be, or writes it.
+fn compare(path: &str, text: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        std::fs::write(&path, &text).unwrap();
+        std::fs::write(&path, text).unwrap();
     }
     assert!(
         text == std::fs::read_to_string(&path).unwrap(),
-        "published.csv is not what the rows say: write it anew, as the head of this file says"
+        "{} is not what the rows say: write it anew, as the head of this file says",
+        path.display()
     );
-    assert!(published().len() > 500, "{}", published().len());
+}
+
+/// Means over replicates of J/Jmax against a column, a curve for each strain rate and start; replicates that ended in two
+/// flows are on none.
+fn curves(table: &Table, across: &str) -> Vec<String> {
+    let mut curves = Vec::new();
+    for (strain_rate, rows) in by_strain_rate(rows_of(table)) {
+        for (start, rows) in grouped(rows, Row::start) {
+            let known = rows
+                .into_iter()
+                .filter(|row| row.flow_rate_ratio().is_finite());
+            let branch = grouped(known, |row| row.number(across)).into_iter();
+            let points = branch
+                .filter(|(_, rows)| !is_split(rows))
+                .map(|(value, rows)| {
+                    let flow =
+                        rows.iter().map(Row::flow_rate_ratio).sum::<f64>() / rows.len() as f64;
+                    let [value, flow] = [format!("{value:.5e}"), format!("{flow:.3}")]
+                        .map(|text| text.parse::<f64>().unwrap() + 0.0);
+                    format!("[{value},{flow}]")
+                });
+            let points: Vec<String> = points.collect();
+            if points.len() > 2 {
+                curves.push(format!(
+                    "{{\"strain_rate\":{strain_rate},\"start\":\"{}\",\"points\":[{}]}}",
+                    start.name(),
+                    points.join(",")
+                ));
+            }
+        }
+    }
+    curves
 }
 
 /// Points as CSV, with three digits; the inverse of reading them.
