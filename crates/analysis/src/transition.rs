@@ -123,6 +123,10 @@ pub struct TransitionDetector {
     threshold: f64,
     period_duration: f64,
     periods: u64,
+    /// Periods with an average in a row, up to the last.
+    in_a_row: u32,
+    /// Periods up to the last at which a crossing could be confirmed.
+    confirmable: u64,
     last_average: f64,
     crossing: Option<Crossing>,
 }
@@ -148,6 +152,8 @@ impl TransitionDetector {
             threshold,
             period_duration,
             periods: 0,
+            in_a_row: 0,
+            confirmable: 0,
             last_average: direction.initial_ratio(),
             crossing: None,
         })
@@ -183,6 +189,10 @@ impl TransitionDetector {
         }
         self.last_average = average;
         self.periods += 1;
+        self.in_a_row = self.in_a_row.saturating_add(1);
+        if self.in_a_row >= CONFIRMATION_PERIODS {
+            self.confirmable = self.periods;
+        }
         Ok(self.outcome())
     }
 
@@ -194,6 +204,7 @@ impl TransitionDetector {
             self.crossing = None;
         }
         self.periods += 1;
+        self.in_a_row = 0;
     }
 
     /// The transition, or the time up to which the run has been watched without one.
@@ -208,9 +219,10 @@ impl TransitionDetector {
         }
     }
 
-    /// Time up to which a transition is found in the periods so far: [`watched`].
+    /// Time up to which a transition is found in the periods so far: [`watched`] of those up to the last three in a row that
+    /// have an average.
     pub fn watched(&self) -> f64 {
-        watched(self.periods, self.period_duration)
+        watched(self.confirmable, self.period_duration)
     }
 
     /// Whether the transition has been found, so that a run need not go on for its sake.
@@ -316,6 +328,24 @@ mod tests {
         // A crossing at 1.5 T with two of its three periods.
         assert_eq!(upward(&[0.1, 0.9, 0.9]), Transition::Censored { time: 1.0 });
         assert_eq!(upward(&[0.1, 0.9, 0.9]).observed(), None);
+    }
+
+    /// A newcomer: a wave that stood from the fifth period on, for ever, counted as watched until then.
+    #[test]
+    fn periods_without_an_average_are_not_watched() {
+        let mut detector = TransitionDetector::new(Direction::Upward, 0.5, 2.0).unwrap();
+        for average in [0.1, 0.2, 0.4, 0.6] {
+            detector.push(average).unwrap();
+        }
+        assert_eq!(detector.watched(), 3.0);
+        (0..20).for_each(|_| detector.skip());
+        assert_eq!(detector.watched(), 3.0);
+        // Two are too few to confirm a crossing.
+        detector.push(0.1).unwrap();
+        detector.push(0.1).unwrap();
+        assert_eq!(detector.watched(), 3.0);
+        detector.push(0.1).unwrap();
+        assert_eq!(detector.outcome(), Transition::Censored { time: 49.0 });
     }
 
     #[test]

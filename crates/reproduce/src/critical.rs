@@ -195,6 +195,12 @@ impl<'a> Line<'a> {
         Self::new(self.strain_rate, threshold, self.rows.clone())
     }
 
+    /// Part of the runs that their transition ended before they came to this threshold.
+    pub(crate) fn stopped_before(&self) -> f64 {
+        let stopped = |row: &&Row<'_>| row.is_stopped_before(self.threshold);
+        self.rows.iter().filter(stopped).count() as f64 / self.rows.len() as f64
+    }
+
     /// Width and transition of every run.
     pub(crate) fn columns(&self) -> (Vec<f64>, Vec<Transition>) {
         columns(&self.rows, self.threshold)

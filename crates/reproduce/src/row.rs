@@ -314,13 +314,27 @@ impl<'a> Row<'a> {
         self.transition_of(self.number(&threshold_column(place)))
     }
 
+    /// Time up to which a transition is found \[t\]; rows of older programs do not say it.
+    pub(crate) fn watched(&self) -> f64 {
+        let (strain_rate, end) = (self.strain_rate(), self.time());
+        // Of whole periods, which rounding may have left short.
+        let periods = (end * strain_rate + 1e-6) as u64;
+        match self.number_or("watched", f64::NAN) {
+            unknown if unknown.is_nan() => watched(periods, 1.0 / strain_rate),
+            known => known,
+        }
+    }
+
+    /// Whether it was ended by its transition, without one at a threshold.
+    pub(crate) fn is_stopped_before(&self, threshold: f64) -> bool {
+        self.text("status") == "settled" && self.transition_at(threshold).observed().is_none()
+    }
+
     fn transition_of(&self, time: f64) -> Transition {
         if time.is_nan() {
-            let (strain_rate, end) = (self.strain_rate(), self.time());
-            // Of whole periods, which rounding may have left short.
-            let periods = (end * strain_rate + 1e-6) as u64;
-            let time = watched(periods, 1.0 / strain_rate);
-            return Transition::Censored { time };
+            return Transition::Censored {
+                time: self.watched(),
+            };
         }
         Transition::At {
             time,

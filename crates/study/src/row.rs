@@ -142,8 +142,9 @@ impl Row {
             "time" => !(found > 0.0 && found.is_finite()),
             "transition_time" => {
                 // A censored run ended before a transition.
-                found < 0.0 || found > value("time") || is_censored && found.is_finite()
+                found < 0.0 || found > value("time") || is_censored == found.is_finite()
             }
+            "watched" => found < 0.0 || found > value("time"),
             "flow_rate" => !found.is_finite(),
             "flow_rate_ratio" => found.is_infinite(),
             _ => found < 0.0 || found.is_infinite(),
@@ -152,6 +153,7 @@ impl Row {
             "time",
             "periods",
             "transition_time",
+            "watched",
             "flow_rate",
             "flow_rate_ratio",
             "largest_overlap",

@@ -450,7 +450,8 @@ def survival(curve: Survival, ax: Axes | None = None, *, label: str | None = Non
         bounds = np.append(lower, lower[-1]), np.append(upper, upper[-1])
         new.fill_between(time, *bounds, step="post", color=drawn.get_color(), alpha=0.25, linewidth=0)
         new.set(xlabel="time, $t$", ylabel="runs without a transition, $S(t)$", ylim=(0.0, 1.05))
-        new.set_xlim(0.0, latest)
+        # A last step down is inside of the frame.
+        new.set_xlim(0.0, 1.03 * latest)
         if label is not None:
             set_legend(new)
     return new

@@ -356,7 +356,7 @@ impl Lifetime {
             ended: [ended.count(), jams.len()],
             void: void.len(),
             mean: fit.ok().map(|fit| fit.mean.scaled(first.strain_rate())),
-            watched: longest(rows),
+            watched: largest(rows, |row| row.watched() * row.strain_rate()),
             flow: scattered(rows, Row::flow_rate_ratio),
         }
     }

@@ -61,7 +61,7 @@ impl<'a> AtForce<'a> {
 
     /// For how many periods all runs were watched at least.
     fn watched(&self) -> f64 {
-        let times = self.rows.iter().map(Row::time);
+        let times = self.rows.iter().map(Row::watched);
         times.fold(f64::INFINITY, f64::min) * self.strain_rate
     }
 

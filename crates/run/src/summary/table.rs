@@ -119,7 +119,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("periods", "1", "wavelengths that the wave has run", Real(|s| s.periods)).labelled("periods run"),
     result("transition_time", "t", "time of the transition, tau; missing where there was none", Optional(|s| s.transition_time)).labelled("transition time τ"),
     result("censored", "", "whether the run ended before a transition", Truth(|s| s.transition_time.is_none())),
-    result("watched", "t", "time up to which a transition is found, 2.5 periods before the end: where a run without one is censored; missing where no transition can be told", Optional(|s| s.watched)).labelled("time watched").later(),
+    result("watched", "t", "time up to which a transition is found, 2.5 periods before the end of the last whole one that has a J/Jmax: where a run without one is censored; missing where no transition can be told", Optional(|s| s.watched)).labelled("time watched").later(),
     setting("transition_threshold", "1", "J/Jmax whose crossing counts as the transition", Real(|c| c.observe.transition_threshold)).labelled("threshold of J/Jmax"),
     result("transition_time_10", "t", "time of the transition with the threshold 0.1; missing where there was none", Optional(|s| s.transition_times[0])).only_in_rows().labelled("transition time τ at J/Jmax = 0.1"),
     result("transition_time_20", "t", "time of the transition with the threshold 0.2; missing where there was none", Optional(|s| s.transition_times[1])).only_in_rows().labelled("transition time τ at J/Jmax = 0.2"),

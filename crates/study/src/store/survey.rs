@@ -1,6 +1,6 @@
 //! All that is known of a study, for whoever wants to look.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::{Entry, LEASE_TIMEOUT, State, Store};
 use crate::error::{Result, StudyError};
@@ -61,6 +61,15 @@ impl Survey {
             *counts.entry(self.state(run.identity)).or_default() += 1;
         }
         counts
+    }
+
+    /// Finished runs in the store that are not in the plan.
+    pub fn others(&self) -> usize {
+        let planned: HashSet<Identity> = self.plan.runs().iter().map(|run| run.identity).collect();
+        let is_other = |(identity, entry): &(&Identity, &Entry)| {
+            entry.state == State::Done && !planned.contains(*identity)
+        };
+        self.entries.iter().filter(is_other).count()
     }
 
     /// The work of all runs of the plan, in grains times steps.

@@ -168,6 +168,13 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
             ));
         }
     }
+    let others = store.survey()?.others();
+    if others > 0 {
+        say(&format!(
+            "not part of the study as it stands: {}",
+            counted(others, "finished run")
+        ));
+    }
     Ok(code_of(is_whole))
 }
 

@@ -1,9 +1,8 @@
 //! `peristalsis study status` and `peristalsis study why`
 
-use std::collections::HashSet;
 use std::process::ExitCode;
 
-use peristalsis_study::{Bracket, Identity, State, Store, Survey, brackets};
+use peristalsis_study::{Bracket, State, Store, Survey, brackets};
 use serde_json::{Value, json};
 
 use super::{StatusArguments, WhyArguments};
@@ -84,12 +83,7 @@ fn in_words(store: &Store, survey: &Survey) -> String {
     let counts: Vec<String> = survey.counts().into_iter().map(in_state).collect();
     let (runs, counts) = (counted(survey.plan.runs().len(), "run"), counts.join(", "));
     text.push_str(&format!("{runs}: {counts}\n"));
-    let planned: HashSet<Identity> = survey.plan.runs().iter().map(|run| run.identity).collect();
-    let others = survey
-        .entries
-        .iter()
-        .filter(|(identity, entry)| entry.state == State::Done && !planned.contains(identity));
-    let others = others.count();
+    let others = survey.others();
     if others > 0 {
         text += &format!(
             "not part of the study as it stands: {}\n",

@@ -186,7 +186,7 @@ def transition_time(
     Returns
     -------
     TransitionTime
-        tau, or the end of the series where there was no transition.
+        tau, or how long the series was watched where there was no transition.
 
     Raises
     ------
