@@ -253,3 +253,29 @@ fn outside_the_data_nothing_is_expected_and_within_it_the_flow_is_that_of_the_ro
     assert!(page.contains("gravity across the tube") && page.contains("all &lt;of&gt; it"));
     assert_eq!(rounded(0.123_456), 0.123);
 }
+
+/// An engineer: with a little friction, or against a little pressure, grains at rest were foretold to jam, as without.
+#[test]
+fn tubes_with_friction_or_a_load_are_compared_with_their_like() {
+    let starts = |setting: &str| {
+        let settings = [
+            "drive.width=2.6",
+            "drive.strain_rate=0.1",
+            "tube.waves=4",
+            setting,
+        ];
+        let configuration = Configuration::from_preset("frictionless-fine", &settings).unwrap();
+        let estimate = peristalsis_run::estimate(&configuration, None).unwrap();
+        let design = Design::of(&configuration, estimate).unwrap();
+        let starts: Vec<&str> = design.expected.iter().map(|it| it.start).collect();
+        (starts, design.regime)
+    };
+    assert_eq!(starts("drive.body_force=0").0, ["rest", "jammed"]);
+    assert!(starts("contact.static_friction=0.1").0.is_empty());
+    let (loaded, regime) = starts("drive.body_force=-0.003");
+    assert_eq!(loaded, ["jammed"]);
+    assert!(
+        regime.contains("of grains from rest no published run tells"),
+        "{regime}"
+    );
+}

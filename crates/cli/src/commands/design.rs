@@ -138,6 +138,9 @@ fn in_words(design: &Design) -> String {
     }
     lines.push(String::new());
     lines.push(format!("regime            {}", design.regime));
+    if let Some(wall) = design.wall {
+        lines.push(format!("wall              {wall}"));
+    }
     for flow in &design.expected {
         let expected = &flow.expectation;
         let mut line = format!(

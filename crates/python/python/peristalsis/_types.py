@@ -644,8 +644,8 @@ class Summary(_Rare):
     censored: bool
     """whether the run ended before a transition"""
     watched: float | None
-    """time up to which a transition is found, 2.5 periods before the end: where a run without one is censored;
-    missing where no transition can be told [t]"""
+    """time up to which a transition is found, 2.5 periods before the end of the last whole one that has a J/Jmax:
+    where a run without one is censored; missing where no transition can be told [t]"""
     transition_threshold: float
     """J/Jmax whose crossing counts as the transition"""
     flow_rate_ratio: float

@@ -402,7 +402,10 @@ fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row
         sum(|one| one.ended[1]),
     );
     let (tubes, all) = (found.len(), jams + void);
-    draft.paragraph("lifetimes", values!(watched, tubes, void, ended, all));
+    draft.paragraph(
+        "lifetimes",
+        values!(watched = number(watched, 0), tubes, void, ended, all),
+    );
     draft.table("lifetimes", &[], found.iter().map(Lifetime::row));
 }
 

@@ -15,6 +15,8 @@ pub struct Group {
     scale: f64,
     /// Whether ratios count, and values below this least one as it.
     by_ratio: Option<f64>,
+    /// Whether tubes that have none of it are another kind, which tells nothing of those that have some.
+    is_kind: bool,
     value: fn(&Tube<'_>) -> f64,
 }
 
@@ -45,6 +47,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "clear bore over grain diameter",
         scale: 0.7,
         by_ratio: Some(0.1),
+        is_kind: false,
         value: |tube| tube.bore / tube.diameter,
     },
     Group {
@@ -52,6 +55,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "occlusion, 1 - (clear throat)/(clear bore)",
         scale: 0.04,
         by_ratio: None,
+        is_kind: false,
         value: |tube| 1.0 - tube.throat / tube.bore,
     },
     Group {
@@ -59,6 +63,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "wavelength over clear bore",
         scale: 0.7,
         by_ratio: Some(0.01),
+        is_kind: false,
         value: |tube| tube.configuration.tube.wavelength / tube.bore,
     },
     Group {
@@ -66,6 +71,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "volume of the grains over that of the bore",
         scale: 0.15,
         by_ratio: None,
+        is_kind: false,
         value: |tube| {
             let outer = 2.0 * tube.configuration.tube.radius / tube.bore;
             tube.configuration.volume_fraction() * outer * outer
@@ -76,6 +82,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "spread of the diameters, to either side of the mean",
         scale: 0.2,
         by_ratio: None,
+        is_kind: false,
         value: |tube| {
             let grains = &tube.configuration.grains;
             0.5 * (grains.diameter_max - grains.diameter_min) / tube.diameter
@@ -84,8 +91,9 @@ pub const ALL: [Group; GROUPS] = [
     Group {
         name: "friction",
         meaning: "friction, static",
-        scale: 0.25,
+        scale: 0.1,
         by_ratio: None,
+        is_kind: true,
         value: |tube| {
             let friction = tube.configuration.contact.friction;
             friction.map_or(0.0, |law| law.static_friction)
@@ -96,6 +104,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "1 - restitution, of two grains that meet at the wave's speed",
         scale: 1.0,
         by_ratio: Some(0.005),
+        is_kind: false,
         value: |tube| 1.0 - restitution_at_wave_speed(tube.configuration),
     },
     Group {
@@ -103,6 +112,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "overlap of two grains that meet at the wave's speed, over the diameter",
         scale: 0.7,
         by_ratio: Some(0.03),
+        is_kind: false,
         value: |tube| overlap_at_wave_speed(tube.configuration),
     },
     Group {
@@ -110,6 +120,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "spacing of the wall's spheres over grain diameter (a real wall: 0)",
         scale: 0.5,
         by_ratio: Some(0.2),
+        is_kind: false,
         value: |tube| {
             let lattice = &tube.configuration.tube;
             let around = core::f64::consts::TAU * lattice.radius * lattice.length();
@@ -125,6 +136,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "gravity across the tube, g (bore)/c^2",
         scale: 0.05,
         by_ratio: None,
+        is_kind: false,
         value: |tube| {
             let [x, y, _] = tube.configuration.body.gravity;
             tube.against_the_wave(x.hypot(y))
@@ -135,6 +147,7 @@ pub const ALL: [Group; GROUPS] = [
         meaning: "weight and back pressure against the wave, as an acceleration g (bore)/c^2",
         scale: 0.02,
         by_ratio: None,
+        is_kind: true,
         value: |tube| 0.0 - tube.against_the_wave(tube.configuration.axial_body_force()),
     },
 ];
@@ -195,8 +208,11 @@ pub(super) fn unlike(configuration: &Configuration) -> Vec<&'static str> {
 }
 
 impl Group {
-    /// How far apart two values are.
+    /// How far apart two values are: infinitely where they are of two kinds of tube.
     pub(super) fn distance(&self, one: f64, other: f64) -> f64 {
+        if self.is_kind && (one == 0.0) != (other == 0.0) {
+            return f64::INFINITY;
+        }
         let apart = match self.by_ratio {
             Some(least) => (one.max(least) / other.max(least)).ln(),
             None => one - other,
