@@ -139,7 +139,7 @@ impl Store {
     }
 
     /// Identities that the folders below name; other names are skipped.
-    fn identities(&self, folder: &str) -> Result<Vec<Identity>> {
+    pub(super) fn identities(&self, folder: &str) -> Result<Vec<Identity>> {
         let folder = self.file(folder);
         let entries = match fs::read_dir(&folder) {
             Ok(entries) => entries,

@@ -113,6 +113,11 @@ impl RunFiles {
         self.file(SEAL).exists()
     }
 
+    /// Whether there is a state to go on from.
+    pub(crate) fn has_checkpoint(&self) -> bool {
+        CHECKPOINTS.iter().any(|name| self.file(name).exists())
+    }
+
     /// The verdict of the files. A run whose files have the stamp `checked` is taken as unchanged since its hashes were checked.
     pub(crate) fn verdict(&self, checked: Option<&str>) -> Verdict {
         if self.is_sealed() {
@@ -124,10 +129,10 @@ impl RunFiles {
                 .and_then(|value| Some(value.get("reason")?.as_str()?.to_owned()));
             return Verdict::Failed(reason.unwrap_or(text));
         }
-        if CHECKPOINTS.iter().any(|name| self.file(name).exists()) {
-            return Verdict::Checkpointed;
+        match self.has_checkpoint() {
+            true => Verdict::Checkpointed,
+            false => Verdict::Nothing,
         }
-        Verdict::Nothing
     }
 
     fn sealed(&self, checked: Option<&str>) -> Result<Verdict, String> {

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 
-use super::{Entry, LEASE_TIMEOUT, State, Store};
+use super::{Entry, LEASE_TIMEOUT, RUNS, State, Store};
 use crate::error::{Result, StudyError};
 use crate::estimate::work;
 use crate::identity::Identity;
@@ -137,10 +137,17 @@ impl Store {
     pub fn survey(&self) -> Result<Survey> {
         let study = self.specification()?;
         let index = self.index_to_read()?;
-        let entries = index.entries()?;
-        let leases = index
-            .leases(LEASE_TIMEOUT)?
-            .into_iter()
+        let mut entries = index.entries()?;
+        let leases = index.leases(LEASE_TIMEOUT)?;
+        // Of a run that was killed the index says nothing: only its folder does.
+        for identity in self.identities(RUNS)? {
+            let is_known = entries.contains_key(&identity) || leases.contains_key(&identity);
+            if !is_known && self.run_files(identity).has_checkpoint() {
+                entries.insert(identity, Entry::new(State::Checkpointed, None));
+            }
+        }
+        let leases = leases.into_iter();
+        let leases = leases
             .map(|(identity, lease)| (identity, lease.in_words()))
             .collect();
         let mut plan = study.plan().clone();
