@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use peristalsis_run::Progress;
 
+use crate::commands::unsigned_zero;
 use crate::failure::say;
 
 /// Where progress goes.
@@ -152,9 +153,10 @@ pub(crate) fn found(progress: &Progress) -> String {
         false => format!("t {:.1}", progress.time),
     };
     if progress.flow_rate_ratio.is_finite() {
-        // What reads 0 has no minus.
-        let ratio = (1e3 * progress.flow_rate_ratio).round() / 1e3 + 0.0;
-        text.push_str(&format!("  J/Jmax {ratio:+.3}"));
+        text.push_str(&format!(
+            "  J/Jmax {:+.3}",
+            unsigned_zero(progress.flow_rate_ratio, 3)
+        ));
     }
     if let Some(time) = progress.transition_time {
         text.push_str(&format!("  transition at t = {time:.1}"));

@@ -203,3 +203,21 @@ pub const STUDIES: &[StudyFile] = &[
     study!("silo-head"),
     study!("silo-feed"),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What no study, or no axis of one, stands for would be left out without a word.
+    #[test]
+    fn every_quick_design_is_of_a_study_and_changes_axes_that_it_has() {
+        let designs: Table = STUDIES[0].quick_designs.parse().unwrap();
+        assert_eq!(designs.len(), STUDIES.len());
+        let axes = |design: &Table| design.get("axes")?.as_array().map(Vec::len);
+        for (name, changes) in &designs {
+            let full: Table = StudyFile::named(name).unwrap().full.parse().unwrap();
+            let changed = axes(changes.as_table().unwrap());
+            assert!(changed.is_none() || changed == axes(&full), "{name}");
+        }
+    }
+}

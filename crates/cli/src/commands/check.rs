@@ -9,7 +9,7 @@ use peristalsis_run::{Estimate, estimate, warnings};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::request;
-use crate::commands::{counted, packing, print_report, short, significant};
+use crate::commands::{counted, packing, print_report, rounded, significant};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
@@ -55,7 +55,7 @@ fn tube(estimate: &Estimate) -> Vec<String> {
         ),
         format!(
             "wall              {wall} along {} d",
-            short(estimate.length)
+            rounded(estimate.length)
         ),
     ];
     if let Some(openings) = estimate.clear_openings {
@@ -102,16 +102,16 @@ fn tube(estimate: &Estimate) -> Vec<String> {
 
 /// How long the run is.
 fn time(estimate: &Estimate) -> String {
-    let duration = short(estimate.duration);
+    let duration = rounded(estimate.duration);
     let (Some(period), Some(periods)) = (estimate.period, estimate.periods) else {
         return format!("time              {duration} t, the wave stands still");
     };
-    let [periods, period] = [periods, period].map(short);
+    let [periods, period] = [periods, period].map(rounded);
     let periods = counted(periods, "period");
     let led = estimate.wavelengths.map(|wavelengths| {
         format!(
             " as drive.strain_rate has them; led by drive.schedule, the wave runs {} wavelengths",
-            short(wavelengths)
+            rounded(wavelengths)
         )
     });
     let led = led.unwrap_or_default();

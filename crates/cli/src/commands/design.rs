@@ -14,7 +14,7 @@ use peristalsis_run::{estimate, warnings};
 use crate::arguments::ConfigurationArguments;
 use crate::commands::check::in_words as estimate_in_words;
 use crate::commands::schema::{SchemaArguments, show};
-use crate::commands::{packing, print_report, refuse_loss, say_if_replaced, short, significant};
+use crate::commands::{packing, print_report, refuse_loss, rounded, say_if_replaced, significant};
 use crate::failure::{Failure, say};
 use crate::sources::{configuration, locate, name_and_text};
 use crate::stop::Stop;
@@ -124,11 +124,11 @@ fn text_of_design(sources: &ConfigurationArguments) -> Result<Option<String>, Fa
 fn in_words(design: &Design) -> String {
     let mut lines = vec![format!("{:<76}{:>9}   published", "group", "here")];
     for group in &design.groups {
-        let [least, most] = group.published.map(short);
+        let [least, most] = group.published.map(rounded);
         let line = format!(
             "{:<76}{:>9}   {least} to {most}   {}",
             group.meaning,
-            short(group.value),
+            rounded(group.value),
             group.place()
         );
         lines.push(line.trim_end().to_owned());
@@ -139,7 +139,7 @@ fn in_words(design: &Design) -> String {
     lines.push(String::new());
     lines.push(format!("regime            {}", design.regime));
     if let Some(wall) = design.wall {
-        lines.push(format!("wall              {wall}"));
+        lines.push(format!("rough wall        {wall}"));
     }
     for flow in &design.expected {
         let expected = &flow.expectation;

@@ -27,7 +27,6 @@ use peristalsis_configuration::{Arrangement, Configuration, InitialState};
 use peristalsis_run::Warning;
 use serde::Serialize;
 
-use self::run::measured;
 use crate::failure::{Failure, say};
 
 /// Prints on standard output and answers success; a reader that has gone away is no failure.
@@ -146,16 +145,28 @@ fn packing_words(configuration: &Configuration) -> String {
     )
 }
 
+/// A number that reads 0 with so many decimals as 0, which has no sign.
+pub(crate) fn unsigned_zero(value: f64, decimals: i32) -> f64 {
+    match value.abs() < 0.5 * 0.1_f64.powi(decimals) {
+        true => 0.0,
+        false => value,
+    }
+}
+
 /// A number with at most four significant digits, and none that are zeros at the end.
-fn short(value: f64) -> String {
-    measured((value, f64::NAN))
+fn rounded(value: f64) -> String {
+    let text = significant(value, 4);
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use peristalsis_configuration::Configuration;
 
-    use super::packing_words;
+    use super::{packing_words, rounded, unsigned_zero};
 
     /// A pump engineer: grains were packed "among 0 spheres of the wall".
     #[test]
@@ -167,5 +178,19 @@ mod tests {
         assert_eq!(words(&[]), among);
         let smooth = words(&["tube.arrangement=smooth"]);
         assert!(smooth.contains("203 grains in a smooth wall;"), "{smooth}");
+    }
+
+    #[test]
+    fn a_number_that_reads_zero_has_no_sign() {
+        let texts = [-3e-5, -0.0, -6e-5].map(|it| format!("{:.4}", unsigned_zero(it, 4)));
+        assert_eq!(texts, ["0.0000", "0.0000", "-0.0001"]);
+        assert_eq!(format!("{:+.3}", unsigned_zero(-4e-4, 3)), "+0.000");
+    }
+
+    #[test]
+    fn rounded_numbers_are_as_short_as_they_can_be() {
+        let numbers = [4987.531172069826, 20.0, 0.05, 249.3765586034913, 1e7, 0.0];
+        let texts = ["4988", "20", "0.05", "249.4", "1.000e7", "0"];
+        assert_eq!(numbers.map(rounded), texts);
     }
 }

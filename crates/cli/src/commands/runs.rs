@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 
 use super::run::{DISCHARGE, MASS_FLOW, RUNS, measured};
 use crate::arguments::RunsArguments;
-use crate::commands::{print, print_json, short};
+use crate::commands::{print, print_json, rounded};
 use crate::failure::Failure;
 
 pub(crate) fn runs(arguments: &RunsArguments) -> Result<ExitCode, Failure> {
@@ -219,11 +219,11 @@ fn row(run: &Value) -> [String; 10] {
     }
     let number = |key: &str| run[key].as_f64();
     let plain = |key: &str| number(key).map_or("–".to_owned(), |it| it.to_string());
-    let few_digits = |key: &str| number(key).map_or("–".to_owned(), short);
+    let few_digits = |key: &str| number(key).map_or("–".to_owned(), rounded);
     // A constant that drive.schedule replaces says nothing of the run.
     let drive = |key: &str| match run[format!("{key}_led")].as_array() {
         Some(led) => {
-            let mut led: Vec<String> = led.iter().filter_map(Value::as_f64).map(short).collect();
+            let mut led: Vec<String> = led.iter().filter_map(Value::as_f64).map(rounded).collect();
             led.dedup();
             led.join(" to ")
         }

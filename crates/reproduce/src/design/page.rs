@@ -23,7 +23,7 @@ pub fn page(design: &Design, name: &str, cost: &str) -> String {
                     main #main {
                         h1 { "Design of " (name) }
                         p { b { "Regime: " } (design.regime) "." }
-                        @if let Some(wall) = design.wall { p { b { "Wall: " } (wall) "." } }
+                        @if let Some(wall) = design.wall { p { b { "Rough wall: " } (wall) "." } }
                         @for flow in &design.expected {
                             p {
                                 "From " (flow.start) ": J/Jmax = " (rounded(flow.expectation.flow_rate_ratio)) " ± "

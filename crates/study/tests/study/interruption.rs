@@ -159,3 +159,16 @@ fn a_run_that_may_settle_is_the_beginning_of_one_that_may_not() {
     let end = short.reals("time").unwrap().last().unwrap() - tau;
     assert!((60.0..=90.0).contains(&end), "{end}");
 }
+
+/// A newcomer: of a run whose program was killed "nothing has been computed yet" was said, though it goes on from its state.
+#[test]
+fn a_run_that_was_killed_is_known_by_its_folder() {
+    let place = Place::new(&longer());
+    let store = place.store();
+    let identity = store.survey().unwrap().plan.runs()[0].identity;
+    let folder = store.path().join("runs").join(identity.to_string());
+    std::fs::create_dir_all(&folder).unwrap();
+    assert_eq!(store.survey().unwrap().state(identity), State::Pending);
+    std::fs::write(folder.join("state.checkpoint"), "").unwrap();
+    assert_eq!(store.survey().unwrap().state(identity), State::Checkpointed);
+}

@@ -17,7 +17,7 @@ use serde_json::json;
 pub(crate) use self::arguments::RenderArguments;
 use self::arguments::{FRAMES_PER_SECOND, Origin};
 use crate::choice::{Format, View};
-use crate::commands::{counted, packing, print, refuse_loss, say, say_if_replaced, short};
+use crate::commands::{counted, packing, print, refuse_loss, rounded, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::stop::Stop;
@@ -398,9 +398,9 @@ fn report(
     let out = out.display();
     let of_instant = match instant {
         Some((time, Some(periods))) => {
-            format!(" of t = {} ({periods:.2} periods)", short(time))
+            format!(" of t = {} ({periods:.2} periods)", rounded(time))
         }
-        Some((time, None)) => format!(" of t = {}", short(time)),
+        Some((time, None)) => format!(" of t = {}", rounded(time)),
         None => String::new(),
     };
     let text = if arguments.json {

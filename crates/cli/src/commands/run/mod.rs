@@ -18,7 +18,7 @@ use peristalsis_run::{
 
 use crate::arguments::{RunArguments, Threads};
 use crate::commands::trajectory::{in_words as in_one_line, request};
-use crate::commands::{counted, packing, print, say, short, tell, warn_besides};
+use crate::commands::{counted, packing, print, rounded, say, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
@@ -217,8 +217,8 @@ fn say_which_periods(arguments: &RunArguments, configuration: &Configuration) {
         configuration.run.periods,
         configuration.drive.period(),
     ) {
-        let [wavelengths, period] = [wavelengths, period].map(short);
-        let periods = counted(short(periods), "period");
+        let [wavelengths, period] = [wavelengths, period].map(rounded);
+        let periods = counted(rounded(periods), "period");
         tell(
             arguments.quiet,
             &format!(

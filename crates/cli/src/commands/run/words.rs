@@ -6,7 +6,7 @@ use peristalsis_configuration::{HOUR, Units};
 use peristalsis_reproduce::report::plain_text;
 use peristalsis_run::{Discharge, Pumping, Run, Summary};
 
-use crate::commands::{counted, short, significant};
+use crate::commands::{counted, significant};
 use crate::progress::seconds;
 
 /// How far a run came: in periods, or in time where the wave stands still.
@@ -115,10 +115,10 @@ fn flow(run: &Run, summary: &Summary) -> String {
         // The load of a fluid counts against its viscosity, which grains do not have.
         let is_loaded = summary.pumping.is_some();
         let load = if is_loaded { " without load" } else { "" };
-        let newtonian = short(newtonian);
+        let newtonian = number(newtonian);
         // Whoever has a real tube knows its clear bore, not where spheres stand for its wall.
         let clear_bore = clear_bore.filter(|_| configuration.units.is_some());
-        let clear_bore = clear_bore.map(|it| format!("; in the clear bore {}", short(it)));
+        let clear_bore = clear_bore.map(|it| format!("; in the clear bore {}", number(it)));
         let clear_bore = clear_bore.unwrap_or_default();
         flow += &format!(" (a Newtonian fluid{load}: {newtonian}{clear_bore})");
     }
@@ -167,20 +167,20 @@ fn in_si(run: &Run, summary: &Summary) -> String {
     let torque = torque.map(|it| {
         format!(
             " (torque {} N m of a shaft that turns once for each wave)",
-            short(it)
+            number(it)
         )
     });
     let mut text = format!(
         "\nin SI: {} kg/h{}, wall power {} W{}, pressure on the wall {} Pa (at most {} averaged over 1/{} of a wavelength)",
         measured((HOUR * mass_flow, HOUR * error)),
         summary.discharge.map_or("", |_| " along the tube"),
-        short(power),
+        number(power),
         torque.unwrap_or_default(),
-        short(pressure),
-        short(largest),
+        number(pressure),
+        number(largest),
         run.configuration().observe.profile_bins
     );
-    let force = |value: f64| summary.in_si(value, Units::force).map(short);
+    let force = |value: f64| summary.in_si(value, Units::force).map(number);
     if let Some((high, largest, moments)) = summary.contact_force()
         && let (Some(high), Some(largest)) = (force(high), force(largest))
     {
@@ -225,6 +225,11 @@ pub(crate) fn mass_flow(summary: &Summary) -> Option<((f64, f64), &'static str)>
 /// A number with its error, if one is known; with the minus of a keyboard, as all numbers in a terminal.
 pub(crate) fn measured((value, error): (f64, f64)) -> String {
     plain_text(&with_error(value + 0.0, error)).replace('−', "-")
+}
+
+/// A number without an error.
+fn number(value: f64) -> String {
+    measured((value, f64::NAN))
 }
 
 /// A number with its error in SI, or else in the units of the run.

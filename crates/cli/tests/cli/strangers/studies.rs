@@ -76,7 +76,12 @@ fn values_that_are_no_numbers_are_refused_with_their_place() {
     let header = lines.iter().position(|line| line.contains(",identity,"));
     let header = header.unwrap();
     let names: Vec<&str> = text.lines().nth(header).unwrap().split(',').collect();
-    for (name, value) in [("time", "nan"), ("flow_rate_ratio", "inf")] {
+    for (name, value) in [
+        ("time", "nan"),
+        ("flow_rate_ratio", "inf"),
+        ("watched", "-3"),
+        ("watched", "5000000"),
+    ] {
         let column = names.iter().position(|it| *it == name).unwrap();
         let before = lines[header + 1].clone();
         let mut cells: Vec<&str> = before.split(',').collect();
