@@ -1,5 +1,5 @@
 // What program and page say to each other, from the types in crates/viewer/src; made by
-// GOLDEN=write cargo test -p peristalsis-viewer --lib typescript
+// UPDATE_EXPECT=1 cargo test -p peristalsis-viewer --lib typescript
 // A number that is not finite is sent as null.
 
 /** The tube and the ranges of its sliders. */

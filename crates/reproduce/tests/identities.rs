@@ -1,7 +1,7 @@
 //! Who the runs behind the claims are: identities and seeds of every study, against those on record. The rows in
 //! `validation/results` belong to these.
 //!
-//! `GOLDEN=write cargo test -p peristalsis-reproduce --test identities` writes the record anew: right where runs were added.
+//! `UPDATE_EXPECT=1 cargo test -p peristalsis-reproduce --test identities` writes the record anew: right where runs were added.
 
 #![allow(
     clippy::unwrap_used,
@@ -9,9 +9,8 @@
 )]
 
 use std::fmt::Write;
-use std::fs;
-use std::path::Path;
 
+use expect_test::expect_file;
 use peristalsis_formats::hexadecimal;
 use peristalsis_reproduce::{STUDIES, Size};
 use sha2::{Digest, Sha256};
@@ -39,9 +38,5 @@ fn runs_are_who_they_were() {
             .unwrap();
         }
     }
-    let record = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/identities.txt");
-    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        fs::write(&record, &found).unwrap();
-    }
-    assert_eq!(found, fs::read_to_string(&record).unwrap());
+    expect_file!["identities.txt"].assert_eq(&found);
 }

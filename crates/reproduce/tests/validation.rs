@@ -1,6 +1,6 @@
 //! `VALIDATION.md` says what the rows in `validation/results` say.
 //!
-//! `GOLDEN=write cargo test -p peristalsis-reproduce --test validation` writes it anew, with the first figure of each claim:
+//! `UPDATE_EXPECT=1 cargo test -p peristalsis-reproduce --test validation` writes it anew, with the first figure of each claim:
 //! right where rows, claims or their words have changed.
 
 #![allow(
@@ -11,6 +11,7 @@
 use std::fs;
 use std::path::Path;
 
+use expect_test::expect_file;
 use peristalsis_reproduce::report::Report;
 use peristalsis_reproduce::{CLAIMS, Reproduction, STUDIES, Size};
 
@@ -47,26 +48,18 @@ fn seen(cell: &str) -> String {
 fn the_document_says_what_the_rows_say() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let report = published(&root);
-    let (path, folder) = (root.join("VALIDATION.md"), root.join(FIGURES));
     let text = report.markdown(FIGURES);
-    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        fs::write(&path, &text).unwrap();
-        fs::remove_dir_all(&folder).ok();
-        fs::create_dir_all(&folder).unwrap();
-        for (name, drawing) in report.main_figures() {
-            fs::write(folder.join(name).with_extension("svg"), drawing.svg()).unwrap();
-        }
-    }
-    assert!(
-        text == fs::read_to_string(&path).unwrap(),
-        "VALIDATION.md is not what the rows say: write it anew, as the head of this test says"
-    );
+    expect_file![root.join("VALIDATION.md")].assert_eq(&text);
+    let folder = root.join(FIGURES);
+    let mut drawn = Vec::new();
     for (name, drawing) in report.main_figures() {
-        let file = fs::read_to_string(folder.join(&name).with_extension("svg"));
-        assert!(
-            file.is_ok_and(|file| file == drawing.svg()),
-            "{name}.svg: write it anew"
-        );
+        let path = folder.join(name).with_extension("svg");
+        expect_file![&path].assert_eq(&drawing.svg());
+        drawn.push(path);
+    }
+    for entry in fs::read_dir(&folder).unwrap() {
+        let path = entry.unwrap().path();
+        assert!(drawn.contains(&path), "of no claim: {}", path.display());
     }
     // Bars and rules of tables are no words.
     let words = text

@@ -1,7 +1,7 @@
 //! The bits of runs, against those on record: every preset, law, waveform and drive, with every kernel, integrator and set
 //! of instructions. A change of structure changes none of them.
 //!
-//! `GOLDEN=write cargo test -p peristalsis-run --test golden` writes the record anew. Where that is right because
+//! `UPDATE_EXPECT=1 cargo test -p peristalsis-run --test golden` writes the record anew. Where that is right because
 //! trajectories have changed, raise `PHYSICS_VERSION`.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
@@ -9,9 +9,8 @@
 mod common;
 
 use std::fmt::Write;
-use std::fs;
-use std::path::Path;
 
+use expect_test::expect_file;
 use peristalsis_engine::Instructions;
 use peristalsis_formats::{Table, csv, hexadecimal};
 use peristalsis_run::{Run, profile_table, snapshot_table, timeseries_table, waves_table};
@@ -101,9 +100,6 @@ fn runs_have_the_bits_on_record() {
             }
         }
     }
-    let record = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden.txt");
-    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        fs::write(&record, &found).unwrap();
-    }
-    assert_eq!(found, fs::read_to_string(&record).unwrap());
+    // The whole path, for WebAssembly knows no variables of the environment.
+    expect_file![concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden.txt")].assert_eq(&found);
 }

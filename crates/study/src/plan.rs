@@ -4,9 +4,7 @@ use std::cmp::Ordering;
 use std::collections::HashMap;
 
 use peristalsis_configuration::document::Node;
-use peristalsis_configuration::{
-    Configuration, ConfigurationError, InitialState, Problem, ProblemKind, word,
-};
+use peristalsis_configuration::{Configuration, InitialState, word};
 use peristalsis_run::Stopping;
 
 use crate::identity::{Identity, Record};
@@ -184,24 +182,14 @@ impl Plan {
         part
     }
 
-    /// No two points are the same run.
-    pub(crate) fn check_distinct(&self) -> Result<(), ConfigurationError> {
-        let mut seen: HashMap<Identity, usize> = HashMap::new();
-        for (place, point) in self.points.iter().enumerate() {
+    /// The first two points that are the same run.
+    pub(crate) fn twins(&self) -> Option<[&Point; 2]> {
+        let mut seen: HashMap<Identity, &Point> = HashMap::new();
+        self.points.iter().find_map(|point| {
             let start = point.configuration.at_its_start();
             let (identity, _) = Identity::of(&start, self.stopping, &self.record, 1)[0];
-            if let Some(first) = seen.insert(identity, place) {
-                let [one, other] = [first, place].map(|point| self.points[point].in_words());
-                let problem = Problem::new(
-                    ProblemKind::Conflict,
-                    format!("two points of the axes are the same run: {one}; {other}"),
-                )
-                .key("axes")
-                .help("an axis names a value once, and a key that changes something: not an amplitude that drive.schedule leads from t = 0 on, nor a run.time_step that becomes the same one, for a sample has a whole number of steps");
-                return Err(problem.into());
-            }
-        }
-        Ok(())
+            Some([seen.insert(identity, point)?, point])
+        })
     }
 
     /// The points; refinement's come after the others.

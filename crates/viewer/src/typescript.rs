@@ -1,10 +1,9 @@
 //! The messages between program and page in TypeScript, `viewer/source/messages.ts`, from the types here; and the numbers by
 //! which both draw.
 //!
-//! `GOLDEN=write cargo test -p peristalsis-viewer --lib typescript` writes it anew; then `just viewer-bundle`.
+//! `UPDATE_EXPECT=1 cargo test -p peristalsis-viewer --lib typescript` writes it anew; then `just viewer-bundle`.
 
-use std::path::Path;
-
+use expect_test::expect_file;
 use peristalsis_run::drawn;
 use ts_rs::{Config, TS};
 
@@ -17,10 +16,9 @@ use crate::timeline::{Row, Sliders};
 use crate::welcome::{Recorded, Welcome};
 use crate::within::{Sibling, Within};
 
-const FILE: &str = "viewer/source/messages.ts";
 const HEAD: &str = "\
 // What program and page say to each other, from the types in crates/viewer/src; made by
-// GOLDEN=write cargo test -p peristalsis-viewer --lib typescript
+// UPDATE_EXPECT=1 cargo test -p peristalsis-viewer --lib typescript
 // A number that is not finite is sent as null.
 ";
 
@@ -101,12 +99,5 @@ fn constants() -> String {
 
 #[test]
 fn the_page_knows_the_messages() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        std::fs::write(root.join(FILE), file()).unwrap();
-    }
-    assert!(
-        std::fs::read_to_string(root.join(FILE)).unwrap() == file(),
-        "{FILE}"
-    );
+    expect_file!["../../../viewer/source/messages.ts"].assert_eq(&file());
 }

@@ -52,7 +52,7 @@ fn earth() -> f64 {
 #[schemars(extend("additionalProperties" = false))]
 struct GrainKeys {
     /// Mean diameter.
-    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 10))]
+    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1))]
     diameter: f64,
     /// Diameters are uniform within this part of the mean to either side; 0: all alike.
     #[serde(default)]
@@ -85,7 +85,7 @@ fn names() -> Vec<&'static str> {
 #[schemars(extend("additionalProperties" = false))]
 struct TubeKeys {
     /// Clear bore of the straight tube: the mean one of a sine, the open one of the other waveforms.
-    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 100))]
+    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 10))]
     diameter: f64,
     /// Length of a wave: the distance of two throats.
     #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e3))]
@@ -149,11 +149,8 @@ pub fn schema() -> Value {
 
 /// Whether a text is the file of a design, not a configuration.
 pub fn is_design(text: &str) -> bool {
-    let begins = |line: &str| {
-        let line = line.split('#').next().unwrap_or_default().trim();
-        line == "[grain]" || line.starts_with("grain.")
-    };
-    text.lines().any(begins)
+    let file = SourceFile { name: "", text };
+    document::parse_file(file, &mut Problems::default()).contains_key("grain")
 }
 
 /// The configuration of a design as TOML, which `run` computes. Its lengths are in diameters of a mean grain.
@@ -223,6 +220,17 @@ fn check_together(keys: &Keys, table: &Table, problems: &mut Problems) {
                 rounded(largest, 6)
             ),
             "tube.diameter is at least grain.diameter (1 + grain.spread)",
+        );
+    }
+    if let Some(length) = tube.length.filter(|it| *it < 0.5 * tube.wavelength) {
+        refuse(
+            ProblemKind::Inconsistent,
+            "tube.length",
+            format!(
+                "tube.length = {length} holds no wave of {}",
+                tube.wavelength
+            ),
+            "tube.length is whole waves, one at least; left out, it is two",
         );
     }
     let number = number_of_grains(keys);

@@ -1,7 +1,7 @@
 //! The points of a study's axes, and the plan of their runs.
 
 use peristalsis_configuration::document::Item;
-use peristalsis_configuration::{ConfigurationError, InitialState};
+use peristalsis_configuration::{ConfigurationError, InitialState, Problem, ProblemKind};
 
 use super::{Choice, Specification, joined};
 use crate::plan::{Plan, Point, Setting, SettingValue};
@@ -29,8 +29,28 @@ impl Specification {
         joined(errors)?;
         let mut plan = Plan::new(self.replicates, self.stopping, self.record.clone());
         plan.add(points);
-        plan.check_distinct()?;
+        self.check_distinct(&plan)?;
         Ok(plan)
+    }
+
+    /// Refuses two points that are the same run.
+    fn check_distinct(&self, plan: &Plan) -> Result<(), ConfigurationError> {
+        let Some(twins) = plan.twins() else {
+            return Ok(());
+        };
+        let [one, other] = twins.map(Point::in_words);
+        let message = format!("two points of the axes are the same run: {one}; {other}");
+        let mut problem = Problem::new(ProblemKind::Conflict, message)
+            .key("axes")
+            .help("an axis names a value once, and a key that changes something: not an amplitude that drive.schedule leads from t = 0 on, nor a run.time_step that becomes the same one, for a sample has a whole number of steps");
+        for (place, axis) in self.axes.iter().enumerate() {
+            let [one, other] = twins.map(|point| point.rows[place]);
+            if one != other {
+                let [one, other] = [one, other].map(|row| &axis.rows[row][0].origin);
+                problem = problem.at(one, "this value").at(other, "and this one");
+            }
+        }
+        Err(problem.into())
     }
 
     /// The value of each key at one row of each axis.

@@ -1,12 +1,9 @@
 //! The page of the book that lists all columns, from the tables of quantities.
 //!
-//! `GOLDEN=write cargo test -p peristalsis-study --test study quantities` writes it anew.
+//! `UPDATE_EXPECT=1 cargo test -p peristalsis-study --test study quantities` writes it anew.
 
-use std::path::Path;
-
+use expect_test::expect_file;
 use peristalsis_observe::{COLUMNS, PROFILE, Quantity, WAVES};
-
-const PAGE: &str = "docs/book/src/reference/quantities.md";
 
 fn rows<'a, Of: 'static>(quantities: impl IntoIterator<Item = &'a Quantity<Of>>) -> String {
     let headings = quantities.into_iter().flat_map(|quantity| {
@@ -72,11 +69,5 @@ fn page() -> String {
 
 #[test]
 fn the_page_of_quantities_is_that_of_the_tables() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../..")
-        .join(PAGE);
-    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        std::fs::write(&path, page()).unwrap();
-    }
-    assert!(std::fs::read_to_string(&path).unwrap() == page(), "{PAGE}");
+    expect_file!["../../../../docs/book/src/reference/quantities.md"].assert_eq(&page());
 }

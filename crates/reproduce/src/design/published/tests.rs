@@ -1,9 +1,10 @@
 //! The published points, and the branches beside which the viewer draws one's own loop, are those of the rows;
-//! `GOLDEN=write cargo test -p peristalsis-reproduce --lib published` writes them anew (then `just viewer-bundle`).
+//! `UPDATE_EXPECT=1 cargo test -p peristalsis-reproduce --lib published` writes them anew (then `just viewer-bundle`).
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use expect_test::expect_file;
 use peristalsis_configuration::Configuration;
 use peristalsis_formats::{Table, Values, csv, parquet};
 use peristalsis_physics::wall::Arrangement;
@@ -21,7 +22,7 @@ fn the_published_points_are_those_of_the_rows() {
         .iter()
         .filter_map(|study| Some((study, read(study.name)?)));
     let text = encoded(&points_of(&studies.collect::<Vec<_>>()));
-    compare("src/design/published.csv", &text);
+    expect_file!["../published.csv"].assert_eq(&text);
     assert!(published().len() > 500, "{}", published().len());
 }
 
@@ -39,7 +40,7 @@ fn the_published_branches_of_the_page_are_those_of_the_rows() {
         format!("\"{of}\":[{curves}]")
     });
     let text = format!("{{{}}}\n", branches.join(","));
-    compare("../../viewer/source/ghosts.json", &text);
+    expect_file!["../../../../../viewer/source/ghosts.json"].assert_eq(&text);
 }
 
 /// The rows of a study in the repository.
@@ -47,19 +48,6 @@ fn read(study: &str) -> Option<Table> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/results");
     let path = folder.join(format!("{study}.parquet"));
     path.exists().then(|| parquet::read(&path).unwrap())
-}
-
-/// Compares a file of the repository with what it should be, or writes it.
-fn compare(path: &str, text: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
-        std::fs::write(&path, text).unwrap();
-    }
-    assert!(
-        text == std::fs::read_to_string(&path).unwrap(),
-        "{} is not what the rows say: write it anew, as the head of this file says",
-        path.display()
-    );
 }
 
 /// Means over replicates of J/Jmax against a column, a curve for each strain rate and start; replicates that ended in two
