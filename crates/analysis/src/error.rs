@@ -111,7 +111,7 @@ pub enum Error {
     },
     /// A fit whose likelihood or sum of squares has no minimum that can be told from its surroundings.
     #[error(
-        "the fit does not settle: {points} points do not determine its {parameters} parameters"
+        "the fit does not settle: {points} points do not determine its {parameters} parameters, or go another way than its law"
     )]
     Undetermined {
         /// Points or runs given.

@@ -76,7 +76,7 @@ pub const COLUMNS: &[Column] = &[
     row("axial_displacement_variance", "d^2", Always, "its variance over the grains: grows as 2 D t where they disperse", |s| s.axial_displacement_variance),
     row("escaped", "1", Always, "grains whose centre lies outside R + d/2", |s| s.escaped),
     row("inside", "1", Always, "grains inside", |s| s.inside),
-    row("wall_axial_force", "m d/t^2", Always, "axial force of the wall on the grains, along the wave", |s| s.wall_axial_force),
+    row("wall_axial_force", "m d/t^2", Always, "axial force of the wall on the grains at the end of the interval, along the wave", |s| s.wall_axial_force),
     row("wall_power", "m d^2/t^3", Always, "mean power that wall or drive put in", |s| s.wall_power),
     row("dissipated_power", "m d^2/t^3", Always, "mean power lost", |s| s.dissipated_power),
     row("potential_energy", "m d^2/t^2", Always, "elastic energy of contacts, wall network and tethers", |s| s.potential_energy),

@@ -74,7 +74,7 @@ mod _core {
     #[pymodule_export]
     use crate::table::Table;
     #[pymodule_export]
-    use crate::title::{title, with_error};
+    use crate::title::{flow_in_time, title, with_error};
 
     #[pymodule_export]
     #[allow(non_upper_case_globals, reason = "the name in Python")]

@@ -79,7 +79,14 @@ impl Newtonian {
     #[pyo3(signature = (width, radius, pressure=0.0))]
     fn from_width(width: f64, radius: f64, pressure: f64) -> PyResult<Self> {
         let flow = NewtonianPeristalsis::from_width(width, radius, pressure);
-        made(flow, "the width is from 0 to 2 a, and the pressure finite")
+        let reason = if !(radius > 0.0 && radius.is_finite()) {
+            format!("the radius is a finite number above 0, not {radius}")
+        } else if !pressure.is_finite() {
+            format!("the pressure is finite, not {pressure}")
+        } else {
+            format!("the width is from 0 to 2 a = {}, not {width}", 2.0 * radius)
+        };
+        made(flow, &reason)
     }
 
     /// The fluid that flows at a given mean rate: the inverse of `flow_rate`.

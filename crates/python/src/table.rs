@@ -12,7 +12,7 @@ use arrow_array::{
 use arrow_schema::{Field, Schema};
 use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
 use peristalsis_formats::{Column, FormatError, Values};
-use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
+use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyCapsule, PyDict, PyIterator};
 
@@ -87,8 +87,13 @@ fn array(values: &Values) -> ArrayRef {
     }
 }
 
-/// Values from an array of NumPy, or from a list of texts.
-fn values(given: &Bound<'_, PyAny>) -> PyResult<Values> {
+/// Values of a column from an array of NumPy, or from a list of texts.
+fn values(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Values> {
+    let kinds = "an array of float64, int64 or bool, or a list of texts";
+    if given.hasattr("mask")? {
+        let reason = format!("column {name} is masked: it must be {kinds}; .filled(nan) makes one");
+        return Err(PyTypeError::new_err(reason));
+    }
     if let Ok(reals) = given.extract::<PyReadonlyArray1<'_, f64>>() {
         return Ok(Values::Real(reals.as_slice()?.to_vec()));
     }
@@ -98,10 +103,8 @@ fn values(given: &Bound<'_, PyAny>) -> PyResult<Values> {
     if let Ok(truths) = given.extract::<PyReadonlyArray1<'_, bool>>() {
         return Ok(Values::Boolean(truths.as_slice()?.to_vec()));
     }
-    let texts = given.extract().map_err(|_| {
-        PyTypeError::new_err("a column is an array of float64, int64 or bool, or a list of texts")
-    });
-    texts.map(Values::Text)
+    let texts = given.extract().map(Values::Text);
+    texts.map_err(|_| PyTypeError::new_err(format!("column {name} must be {kinds}")))
 }
 
 fn failed(error: impl std::fmt::Display) -> PyErr {
@@ -118,7 +121,7 @@ impl Table {
         metadata: Option<HashMap<String, String>>,
     ) -> PyResult<Self> {
         let columns = columns.into_iter().map(|(name, unit, description, given)| {
-            let values = values(&given)?;
+            let values = values(&name, &given)?;
             Ok(Column {
                 name,
                 unit,
@@ -131,7 +134,8 @@ impl Table {
         for (key, value) in metadata.unwrap_or_default() {
             table = table.metadata(key, value);
         }
-        Self::made(table.build())
+        let table = table.build();
+        Self::new(&table.map_err(|error| PyValueError::new_err(error.to_string()))?)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {

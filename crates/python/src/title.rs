@@ -1,9 +1,12 @@
-//! Title and numbers of figures, for Matplotlib.
+//! Title, numbers and curves of figures, for Matplotlib.
 
+use numpy::{IntoPyArray, PyArray1};
 use peristalsis_figures::{Letter, Level, letters};
 use pyo3::prelude::*;
 
 use crate::run::Run;
+
+type Reals<'py> = Bound<'py, PyArray1<f64>>;
 
 const DOT_ABOVE: char = '\u{307}';
 
@@ -11,6 +14,13 @@ const DOT_ABOVE: char = '\u{307}';
 #[pyfunction]
 pub(crate) fn title(py: Python<'_>, run: &Run) -> String {
     mathematical(&run.look(py, |run| peristalsis_run::title(run.configuration())))
+}
+
+/// t/T and J/Jmax of the samples, and of the averages over each period, as the command line's figure has them.
+#[pyfunction]
+pub(crate) fn flow_in_time<'py>(py: Python<'py>, run: &Run) -> [(Reals<'py>, Reals<'py>); 2] {
+    let courses = run.look(py, |run| peristalsis_run::flow_in_time(run));
+    courses.map(|(time, ratio)| (time.into_pyarray(py), ratio.into_pyarray(py)))
 }
 
 /// A value with its standard error, by the rule of the command line's figures.

@@ -37,7 +37,7 @@ pub use peristalsis_figures::{Drawing, Paper};
 pub use peristalsis_formats::{Frame, TrajectoryFormat};
 pub use peristalsis_observe::Value;
 pub use peristalsis_render::{Film, FilmFormat, FilmPlan, Picture, RenderError};
-pub use pictures::{snapshot_stack, space_time, title};
+pub use pictures::{flow_in_time, snapshot_stack, space_time, title};
 pub use recorder::{Recorder, THRESHOLDS};
 pub use run::{Mark, Progress, Run};
 pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing, drawn};

@@ -30,7 +30,7 @@ def whole(name: str, value: Any, least: int, most: int | None = None) -> int:
 def number(name: str, value: Any) -> float:
     """A finite number."""
     try:
-        if isinstance(value, (str, bytes)) or np.iscomplexobj(value):
+        if isinstance(value, (str, bytes, bool, np.bool_)) or np.iscomplexobj(value):
             raise TypeError
         found = float(value)
     except (TypeError, ValueError):

@@ -115,8 +115,11 @@ def missing(key: object, keys: Iterable[str]) -> str:
 
 
 def _meant(word: str, known: Iterable[str]) -> str:
-    near = get_close_matches(word, known, 1)
-    return f"; did you mean {near[0]!r}?" if near else ""
+    # A word within others is no misspelling of another one.
+    within = [other for other in known if word in other.split("_")]
+    within = [one for one in within if not any(one.endswith(f"_{other}") for other in within)]
+    near = within if 0 < len(within) < 4 else get_close_matches(word, known, 1, 0.75)
+    return f"; did you mean {' or '.join(map(repr, near))}?" if near else ""
 
 
 def flat(settings: Mapping[str, Any], path: str = "", name: str = "") -> Iterator[tuple[str, str, Any]]:

@@ -122,10 +122,13 @@ class Loop:
     def _crossing(self, branch: str) -> Threshold | None:
         here = np.array([name == branch for name in self.branch], dtype=bool)
         x, y = self.value[here], self.flow_rate_ratio[here] - self.threshold
-        for (x0, y0), (x1, y1) in zip(zip(x, y), zip(x[1:], y[1:])):
-            if y0 * y1 < 0 or y1 == 0 != y0:
-                crossing = x0 + (x1 - x0) * y0 / (y0 - y1)
-                return Threshold(float(crossing), float(min(x0, x1)), float(max(x0, x1)))
+        known = np.flatnonzero(np.isfinite(y))
+        sides = [place for place in known if y[place] != 0]
+        for one, other in zip(sides, sides[1:]):
+            if y[one] * y[other] < 0:
+                on_it = [x[place] for place in known if one < place < other]
+                crossing = on_it[0] if on_it else x[one] + (x[other] - x[one]) * y[one] / (y[one] - y[other])
+                return Threshold(float(crossing), float(min(x[one], x[other])), float(max(x[one], x[other])))
         return None
 
     def table(self) -> Table:

@@ -194,7 +194,7 @@ class Output(Drive):
         places = {name: None if value is None else number(name, value) for name, value in places.items()}
         width = None if width is None else whole("width", width, 0, 2**32 - 1)
         options: dict[str, Any] = {
-            "view": view, "colour": colour, "range": range, "wall": wall, **places,
+            "view": view, "colour": colour, "range": range if range is None else tuple(number("range", end) for end in range), "wall": wall, **places,
             "waves": waves, "width": width, "paper": paper, "bare": bare,
         }
         picture = Picture(_core.render(self._run, **options, vector=False))

@@ -221,10 +221,14 @@ class Simulation(Made):
         while now < first + steps:
             coming = [(it, due) for it in called if (due := it._due) is not None]
             end = min([first + steps, *(due for _, due in coming)])
-            now += self._run.advance(end - now, _PATIENCE)
-            for it, due in coming:
-                if due == now:
-                    it._fire(self)
+            try:
+                self._run.advance(end - now, _PATIENCE)
+            finally:
+                # Ctrl-C may come just after the steps: what is due then is done all the same.
+                now = self.steps
+                for it, due in coming if self._run.divergence is None else []:
+                    if due == now:
+                        it._fire(self)
             display.update(now - first)
             for view in tuple(self._views):
                 view._seen()

@@ -75,12 +75,12 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
 
     grains, diameters, wall = simulation.positions, simulation.diameters, simulation.wall_positions
     from_axis = np.hypot(grains[:, 0], grains[:, 1])
-    radii = simulation.wall_radius()
+    radii, sphere = simulation.wall_radius(), simulation.configuration["wall.sphere_diameter"]
     # An open tube has no images beyond its ends.
     is_open = simulation.configuration["tube"].get("ends") == "open"
     repeats = np.inf if is_open else length
     escaped = from_axis > simulation.wall_radius(grains[:, 2]) + 0.5 * diameters
-    reach = 1.06 * (radii.max() + (0.0 if is_prescribed(simulation) else 0.5))
+    reach = 1.06 * (radii.max() + (0.0 if is_prescribed(simulation) else 0.5 * sphere))
     shown = from_axis < _REACH * radii.mean()
     if (escaped & shown).any():
         reach = max(reach, float((np.abs(grains[:, 1]) + 0.6 * diameters)[escaped & shown].max()))
@@ -94,14 +94,14 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
             place = np.linspace(begin, end, 400)
             outline = simulation.wall_radius(along(place))
             # The surface of the wall lies half a wall sphere inside of its radius.
-            surface = np.maximum(outline - 0.5 * simulation.configuration["wall.sphere_diameter"], 0.0)
+            surface = np.maximum(outline - 0.5 * sphere, 0.0)
             for side in (1.0, -1.0):
                 new.fill_between(place, side * surface, side * outline, color=GREY, alpha=0.22, linewidth=0.0)
                 new.plot(place, side * outline, color=GREY, linewidth=1.0)
         else:
             # Half a diameter would leave gaps where the wall is stretched.
-            cut = wall[np.abs(wall[:, 0]) < 0.75]
-            _discs(new, along(cut[:, 2]), cut[:, 1], np.ones(len(cut)), repeats, facecolors="#80808028", edgecolors="#80808080")
+            cut = wall[np.abs(wall[:, 0]) < 0.75 * sphere]
+            _discs(new, along(cut[:, 2]), cut[:, 1], np.full(len(cut), sphere), repeats, facecolors="#80808028", edgecolors="#80808080")
         order = np.flatnonzero(shown)
         order = order[np.argsort(grains[order, 0])]
         _spheres(new, along(grains[order, 2]), grains[order, 1], diameters[order], velocity[order], escaped[order], repeats)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Iterable
-from dataclasses import make_dataclass
+from dataclasses import fields, make_dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 #: Rows of a table that a notebook shows, half of them from its end.
 _SHOWN = 10
+#: First columns along which all others run, each value once.
+_ALONG = ("time", "position")
 
 
 def reduced(table: Table) -> tuple[type[Table], tuple[Any, dict[str, str]]]:
@@ -30,11 +32,16 @@ def reduced(table: Table) -> tuple[type[Table], tuple[Any, dict[str, str]]]:
 
 
 def rows(table: Table) -> np.ndarray[Any, np.dtype[np.object_]]:
-    """The rows as objects with the columns as attributes."""
-    row = make_dataclass("Row", table.column_names, frozen=True)
+    """The rows as objects with the columns as attributes; those of keys, such as ``drive.width``, by `getattr` alone."""
+    names = table.column_names
+    row = make_dataclass("Row", [f"column_{place}" for place in range(len(names))], init=False, repr=False, eq=False)
+    for field, name in zip(fields(row), names, strict=True):
+        field.name = name
     columns = [column if isinstance(column, list) else column.tolist() for column in table.values()]
     array = np.empty(len(table), dtype=object)
-    array[:] = [row(*values) for values in zip(*columns, strict=True)]
+    array[:] = [row() for _ in range(len(table))]
+    for made, *values in zip(array, *columns, strict=True):
+        vars(made).update(zip(names, values, strict=True))
     return array
 
 
@@ -59,14 +66,14 @@ def to_xarray(table: Table) -> xarray.Dataset:
     import xarray
 
     units, meanings = table.units, table.descriptions
-    first, column = table.items()[0]
-    rises = not isinstance(column, list) and bool(np.all(np.diff(column) > 0))
-    dimension = first if rises else "row"
+    first = table.column_names[0]
+    is_along = first in _ALONG
+    dimension = first if is_along else "row"
     variables = {
         name: (dimension, column, {"units": units[name], "long_name": meanings[name]})
         for name, column in table.items()
     }
-    return xarray.Dataset(variables, attrs=table.metadata).set_coords([first] if rises else [])
+    return xarray.Dataset(variables, attrs=table.metadata).set_coords([first] if is_along else [])
 
 
 def _headings(table: Table) -> list[str]:

@@ -3,7 +3,8 @@
 Every function draws into `ax`, or into a new figure as wide as a journal's column, and answers the axes. New figures have
 the fonts, symbols and sizes of `STYLE`; axes of yours keep your settings. Colours are those of Okabe and Ito, which stay
 apart for colour-blind readers; red moves along the wave, blue against it. Beyond six curves marks or dashes tell apart what
-has the same colour. A legend that would hide something stands below the axes, for which a new figure grows.
+has the same colour. A legend that would hide something stands below the axes, for which a new
+figure grows; in a figure of yours it does so where that has a layout engine.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from ._drive import PARAMETERS
 from ._given import of_kind
 from ._simulation import Simulation
 from ._snapshot import snapshot
-from ._core import with_error
+from ._core import flow_in_time, with_error
 from ._fit import set_legend, set_title
 from ._style import ALONG, COLOURS, DOUBLE_COLUMN, GREY, SINGLE_COLUMN, STYLE, axes, drawing
 from ._title import SEPARATOR, title, unit, unit_of
@@ -116,31 +117,32 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
     'time, $t/T$'
     """
     of_kind("simulation", simulation, Simulation, "a peristalsis.Simulation")
-    series, summary = simulation.timeseries(), simulation.summary()
-    period, ratio = series["period"], series["flow_rate_ratio"]
+    (time, ratio), (middle, mean) = flow_in_time(simulation._run)
+    summary, strain_rate = simulation.summary(), simulation.configuration["drive.strain_rate"]
+    last = summary["time"] * strain_rate
     if not np.isfinite(ratio).any():
         raise ValueError("there is no flow rate to draw: run the simulation first, with a wave that moves")
     is_alone = ax is None and label is None
     with drawing(ax, height=_FLOW_HEIGHT) as new:
-        known = [np.asarray(drawn.get_xdata())[-1] for drawn in new.lines if drawn.get_gid() == _CURVE]
+        known = [np.max(drawn.get_xdata(), initial=0.0) for drawn in new.lines if drawn.get_gid() == _CURVE]
         colour = line.pop("color", COLOURS[len(known) % len(COLOURS)])
         faint = {"color": SKY, "label": "samples"} if is_alone else {"color": colour, "alpha": 0.4}
-        new.plot(np.convolve(np.r_[0.0, period], [0.5, 0.5], "valid"), ratio, linewidth=0.6, **faint)
-        middle, mean = _period_means(simulation, period, ratio)
+        new.plot(time, ratio, linewidth=0.6, **faint)
         style: dict[str, Any] = {"linewidth": 1.1, "markersize": 3.0, "markeredgewidth": 0.0}
         if len(mean) <= _MARKED or len(known) >= len(COLOURS):
             style |= {"marker": _mark(len(known)), "markevery": max(1, len(mean) // _MARKED * 4)}
-        name = label or ("mean over a period" if is_alone else None)
+        name = label or ("mean over a period" if is_alone and len(mean) else None)
+        # Without a whole period its name alone tells whose the samples are.
         new.plot(middle, mean, **{**style, **line}, color=colour, label=name, gid=_CURVE)
-        _flow_references(new, summary)
+        _flow_references(new, summary, {"color": GREEN} if is_alone else {"color": colour, "alpha": 0.7})
         if is_alone:
-            _late_mean(new, summary, period[-1])
+            _late_mean(new, summary, last)
             if summary["transition_time"] is not None:
-                place = float(np.interp(summary["transition_time"], series["time"], period))
+                place = summary["transition_time"] * strain_rate
                 words = rf"$\tau$ = {summary['transition_time']:.4g} ${unit(simulation, 't')}$ = {place:.1f} $T$"
                 new.axvline(place, color=VERMILLION, linewidth=0.9, label=words)
             set_title(new, title(simulation), SEPARATOR)
-        new.set(xlabel="time, $t/T$", ylabel=_RATIO, xlim=(0.0, math.ceil(max([period[-1] - 1e-6, *known]))))
+        new.set(xlabel="time, $t/T$", ylabel=_RATIO, xlim=(0.0, math.ceil(max([last - 1e-6, *known]))))
         handles = sorted(new.get_legend_handles_labels()[0], key=lambda drawn: drawn.get_gid() != _CURVE)
         set_legend(new, handles, inside=False)
     return new
@@ -149,17 +151,6 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
 def _mark(number: int) -> str:
     """Mark of a curve by its number; with its colour it comes again after 42."""
     return _MARKS[number % len(_MARKS)]
-
-
-def _period_means(simulation: Simulation, period: Array, ratio: Array) -> tuple[Array, Array]:
-    """Middles of the whole periods since the start, and the means over them; samples where there is no whole one."""
-    # A sample is the mean over the interval that ends with it.
-    whole = np.ceil(np.round(period, 9)).astype(int)
-    last = int(np.round(period[-1], 9))
-    if not last:
-        return period, ratio
-    means = np.array([ratio[whole == number].mean() for number in range(1, last + 1) if (whole == number).any()])
-    return np.unique(whole[whole <= last]) - 0.5, means
 
 
 def _once(ax: Axes, name: str) -> bool:
@@ -174,7 +165,7 @@ def _level(ax: Axes, value: float, name: str | None, **line: Any) -> None:
         ax.axhline(value, **line, gid=f"{_REFERENCE} {name} {value!r}", label=None if name in names else name)
 
 
-def _flow_references(ax: Axes, summary: Mapping[str, Any]) -> None:
+def _flow_references(ax: Axes, summary: Mapping[str, Any], fluid: Mapping[str, Any]) -> None:
     for value in (0.0, 1.0):
         _level(ax, value, None, color=GREY, linewidth=0.4, zorder=0.5)
     _level(ax, summary["transition_threshold"], "threshold", color=ax.xaxis.label.get_color(), linestyle=":", linewidth=0.8)
@@ -183,7 +174,7 @@ def _flow_references(ax: Axes, summary: Mapping[str, Any]) -> None:
         ("newtonian_flow_rate_ratio_clear_bore", "the same, clear bore", "-."),
     ):
         if summary[key] is not None:
-            _level(ax, summary[key], name, color=GREEN, linestyle=dashes, linewidth=0.9)
+            _level(ax, summary[key], name, linestyle=dashes, linewidth=0.9, **fluid)
 
 
 def _late_mean(ax: Axes, summary: Mapping[str, Any], last: float) -> None:

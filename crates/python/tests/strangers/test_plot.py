@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -158,7 +159,7 @@ def test_a_loop_is_drawn_with_both_ways_and_their_errors() -> None:
 def test_survival_curves_of_different_lengths_are_all_shown() -> None:
     axes = plot.survival(analysis.Survival([100.0, 200.0]), label="short")
     plot.survival(analysis.Survival([100.0, 800.0]), axes, label="long")
-    assert axes.get_xlim() == (0.0, 800.0)
+    assert axes.get_xlim() == pytest.approx((0.0, 1.03 * 800.0))
 
 
 def test_a_ramp_is_drawn_as_it_is() -> None:
@@ -166,3 +167,24 @@ def test_a_ramp_is_drawn_as_it_is() -> None:
     sim = Simulation.preset("frictionless-fine", width=2.9, strain_rate=0.05, waves=2, seed=1)
     axes = plot.hysteresis(sim.ramp("width", 2.9, 2.5, periods=12, levels=3))
     assert {text.get_text() for text in axes.legend_.get_texts()} == {"there, downwards", "back, upwards"}
+
+
+def test_a_rate_that_changed_and_a_part_of_a_period_are_drawn_by_one_clock() -> None:
+    sim = Simulation.preset("frictionless-fine", width=2.7, strain_rate=0.02, waves=2, seed=1)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        sim.run(periods=0.6)
+        assert [line.get_label() for line in plot.flow(sim).lines if len(line.get_xdata()) == 0] == ["_child1"]
+        sim.run(periods=4.4)
+        sim.strain_rate = 0.05
+        sim.run(periods=10)
+    axes = plot.flow(sim)
+    means, late = axes.lines[1], axes.lines[-2]
+    assert axes.get_xlim() == (0.0, 9.0) and means.get_xdata().tolist() == pytest.approx(np.arange(9) + 0.5)
+    assert sim.summary()["late_periods"] == pytest.approx(np.ptp(late.get_xdata())) and late.get_xdata()[1] == pytest.approx(9.0)
+
+
+def test_spheres_of_an_elastic_wall_are_drawn_in_their_size() -> None:
+    sim = Simulation.preset("frictional", waves=2, seed=1, sphere_diameter=0.4)
+    wall = plot.snapshot(sim).collections[0]
+    assert wall.get_widths()[0] == 0.4  # type: ignore[attr-defined]

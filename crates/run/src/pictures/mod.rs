@@ -17,6 +17,8 @@ use peristalsis_figures::{
     ColourScale, Drawing, FigureError, Palette, Quantity, Scale, Units, Width,
 };
 
+use peristalsis_observe::Sample;
+
 use crate::error::RunError;
 use crate::run::Run;
 use crate::scene::{refused, units};
@@ -202,24 +204,38 @@ fn short(value: f64) -> String {
     (shown + 0.0).to_string()
 }
 
-fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
-    let configuration = run.configuration();
-    let recorder = run.recorder();
+/// J/Jmax in time, as a pair of t/T and J/Jmax for each sample, and for the average over each period; T is the period of
+/// `drive.strain_rate`. Each stands at the middle of what it is the mean over.
+pub fn flow_in_time(run: &Run) -> [(Vec<f64>, Vec<f64>); 2] {
+    let (recorder, rate) = (run.recorder(), run.configuration().drive.strain_rate);
     let samples = recorder.samples();
     // A sample is the mean over the interval that ends with it, an average that over so many intervals.
-    let end = |samples_before: usize| match samples_before {
-        0 => 0.0,
-        number => samples[number.min(samples.len()) - 1].time * configuration.drive.strain_rate,
-    };
     let middles = |count: usize, intervals: f64| -> Vec<f64> {
-        let end = |k: usize| end((k as f64 * intervals).ceil() as usize);
+        let end = |k: usize| clock(samples, (k as f64 * intervals).ceil() as usize, rate);
         (0..count).map(|k| 0.5 * (end(k) + end(k + 1))).collect()
     };
-    let time = middles(samples.len(), 1.0);
     let ratio: Vec<f64> = samples.iter().map(|it| it.flow_rate_ratio).collect();
-    let averages = recorder.averages();
-    let intervals = recorder.samples_of_average();
-    let periods = middles(averages.len(), intervals);
+    let averages = recorder.averages().to_vec();
+    [
+        (middles(samples.len(), 1.0), ratio),
+        (
+            middles(averages.len(), recorder.samples_of_average()),
+            averages,
+        ),
+    ]
+}
+
+/// t/T at the end of so many samples.
+fn clock(samples: &[Sample], number: usize, strain_rate: f64) -> f64 {
+    let last = number.min(samples.len()).checked_sub(1);
+    last.map_or(0.0, |last| samples[last].time * strain_rate)
+}
+
+fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let samples = run.recorder().samples();
+    let end = |number: usize| clock(samples, number, configuration.drive.strain_rate);
+    let [(time, ratio), (periods, averages)] = flow_in_time(run);
     let measured = end(samples.len());
     let mut last = measured;
     if last >= MANY_PERIODS {
@@ -237,10 +253,10 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     }
     if averages.iter().any(|average| average.is_finite()) {
         let name = "mean over a period";
-        let line = Line::new(name, &periods, averages).tint(Tint::Blue);
+        let line = Line::new(name, &periods, &averages).tint(Tint::Blue);
         panel = panel.with(line.weight(1.1));
         if averages.len() <= MARKED_PERIODS {
-            let marks = Points::new(name, &periods, averages).tint(Tint::Blue);
+            let marks = Points::new(name, &periods, &averages).tint(Tint::Blue);
             panel = panel.with(marks.series(0));
         }
     }

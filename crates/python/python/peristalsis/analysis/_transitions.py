@@ -11,7 +11,7 @@ import numpy.typing as npt
 from .. import _core
 from .._arrays import Array
 from .._core import AnalysisError
-from .._given import numeric
+from .._given import number, numeric
 from ._columns import Numbers, reals, result, runs
 from ._results import LifetimeFit, RestrictedMoments, ShiftedExponentialFit, SurvivalStep, Uncertain
 
@@ -154,7 +154,7 @@ class Survival:
         >>> analysis.Survival([1.0, 2.0, 3.0]).restricted_moments(2.5).mean.value
         1.8333333333333335
         """
-        return result(RestrictedMoments, _core.restricted_moments(self._runs, float(horizon)))
+        return result(RestrictedMoments, _core.restricted_moments(self._runs, number("horizon", horizon)))
 
     def __repr__(self) -> str:
         return f"<Survival: {self.observed} transitions in {self.runs} runs, watched up to {self.watched:g}>"
@@ -199,7 +199,10 @@ def transition_time(
     >>> analysis.transition_time([0.1, 0.1, 0.9, 0.9, 0.9, 0.9], period_duration=10.0)
     TransitionTime(time=20.0, observed=True)
     """
-    return TransitionTime(*_core.transition_time(reals("averages", averages), direction, threshold, period_duration))
+    if direction not in ("upward", "downward"):
+        raise AnalysisError(f'direction is "upward" or "downward", not {direction!r}')
+    level, period = number("threshold", threshold), number("period_duration", period_duration)
+    return TransitionTime(*_core.transition_time(reals("averages", averages), direction, level, period))
 
 
 def restricted_moments(
