@@ -89,16 +89,15 @@ pub(crate) struct Runs<'a> {
 }
 
 impl<'a> Runs<'a> {
-    /// The one rule of all claims for leaks: see [`leak`], about the fall of the branch from rest, or about the width at which
-    /// half of the runs have a transition where there is no branch.
+    /// The one rule of all claims for leaks: see [`leak`], of the branches and of the runs whose transitions count, about the
+    /// fall of the branch from rest, or about the width at which half of the runs have a transition where there is no branch.
     fn new(strain_rate: f64, branches: Vec<Row<'a>>, times: Vec<Row<'a>>, threshold: f64) -> Self {
         let fall = Branch::of(&branches, Start::Rest, Control::Width).step();
         let half = || crossing(&times).map(|found| found.width.value);
         let place = fall.map(|step| step.place().value).or_else(half);
-        let rows = if fall.is_some() { &branches } else { &times };
         Self {
             strain_rate,
-            escaped: leak(rows, place),
+            escaped: leak(&branches, place).max(leak(&times, place)),
             branches,
             times,
             threshold,

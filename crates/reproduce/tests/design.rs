@@ -139,7 +139,7 @@ fn what_is_wrong_in_a_design_is_named_with_its_line() {
     let wrong = r#"
 occlusion = 0.6 -> occlusion = 1.6 | tube.occlusion | 8 | too large
 diameter = 14e-3 -> diameter = 1e-3 | tube.diameter | 6 | less than a grain
-diameter = 14e-3 -> diameter = 14 | tube.diameter | 6 | lengths are in metres
+diameter = 14e-3 -> diameter = 9 | tube.diameter | 6 | lengths are in metres
 material = "glass" -> friction = 0.3 | grain.diameter | 3 | grain.density, grain.restitution
 "glass" -> "glas" | grain.material | 2 | glas
 frequency -> frequenzy | drive.frequenzy | 12 | no key

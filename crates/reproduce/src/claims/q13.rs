@@ -241,6 +241,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             None => loss(&at, places),
         });
     }
+    let matters = |places: &[&Place]| {
+        shut_off(places).is_some() || lost(places).is_some_and(|it| !it.interval_95.contains(0.0))
+    };
+    let last = against.iter().rposition(|(_, places)| matters(places));
+    let ends = last.and_then(|last| Some((against[last].0, against.get(last + 1)?.0)));
+    let no_longer = ends.map(|ends| {
+        let (last, first) = (number(ends.0, 2), number(ends.1, 2));
+        PROSE.text("no longer", values!(last, first))
+    });
     let changes = cases[1..].iter().filter_map(|(case, _)| main.against(case));
     let changes: Vec<String> = changes.collect();
     let summary = PROSE.text(
@@ -251,6 +260,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             lifting = lifting_flow,
             from_lifting,
             heads = heads.join(" "),
+            no_longer = no_longer.unwrap_or_default(),
             changes = changes.join(" ")
         ),
     );
@@ -317,8 +327,14 @@ fn shut_off(places: &[&Place]) -> Option<Uncertain> {
 }
 
 /// What the largest head takes of the flow against the smallest one.
+fn lost(places: &[&Place]) -> Option<Uncertain> {
+    Some(places.first()?.flow - places.last()?.flow)
+}
+
+/// The same in words.
 fn loss(occlusion: &str, places: &[&Place]) -> String {
-    let (Some(smallest), Some(largest)) = (places.first(), places.last()) else {
+    let (Some(smallest), Some(largest), Some(loss)) = (places.first(), places.last(), lost(places))
+    else {
         return String::new();
     };
     PROSE.text(
@@ -327,7 +343,7 @@ fn loss(occlusion: &str, places: &[&Place]) -> String {
             occlusion,
             least = number(-smallest.body_force, 3),
             head = number(-largest.body_force, 3),
-            loss = smallest.flow - largest.flow
+            loss
         ),
     )
 }

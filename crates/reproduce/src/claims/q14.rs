@@ -207,8 +207,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             "fuller",
             values!(
                 filling = number(one.filling, 1),
-                flow = cell(one.flow()),
-                wave = cell(wave.flow()),
+                flow = loaded(one),
+                wave = loaded(wave),
                 efficiency = cell(efficiency(one)),
                 wave_efficiency = cell(efficiency(wave))
             ),

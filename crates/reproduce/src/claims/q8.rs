@@ -209,7 +209,13 @@ impl<'b, 'a> AtRate<'b, 'a> {
             "" => PROSE.text("no rises", &[]),
             rises => PROSE.text("rises", values!(rises)),
         };
-        let sweeps = match &*widths.join(", ") {
+        let ends: Vec<&str> = widths
+            .first()
+            .into_iter()
+            .chain(widths.last().filter(|_| widths.len() > 1))
+            .map(String::as_str)
+            .collect();
+        let sweeps = match &*ends.join(" to ") {
             "" => PROSE.text("no sweeps", &[]),
             widths => PROSE.text("sweeps", values!(widths)),
         };
@@ -219,6 +225,10 @@ impl<'b, 'a> AtRate<'b, 'a> {
 
     fn add_quantities(&self, draft: &mut Draft) {
         let rate = &self.rate;
+        for one in &self.sizes {
+            let height = one.rise().map(|rise| rise.height);
+            draft.quantity("rise", values!(rate, waves = one.waves), height);
+        }
         let sizes = self.sizes.iter();
         let force = self.fluctuating_force().unwrap_or(f64::NAN);
         let fluctuations = sizes.filter_map(|one| Some((one.waves, one.fluctuation_at(force)?)));
@@ -227,10 +237,6 @@ impl<'b, 'a> AtRate<'b, 'a> {
         let loops = self.loops.iter();
         let widths = loops.filter_map(|one| Some((one.periods, one.width()?)));
         draft.quantity("exponent of loop", values!(rate), fitted_power(widths));
-        for one in &self.sizes {
-            let height = one.rise().map(|rise| rise.height);
-            draft.quantity("rise", values!(rate, waves = one.waves), height);
-        }
     }
 }
 
@@ -277,6 +283,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     if !loops.is_empty() {
         draft.table("loops", &[], loops.iter().map(Loop::row));
+    }
+    for at in &rates {
+        let escaped = at.loops.iter().map(|one| one.escaped).fold(0.0, f64::max);
+        if escaped > MOST_ESCAPED {
+            let (part, rate) = (number(escaped, 2), number(1e3 * at.rate, 2));
+            draft.weakness("leaking", values!(part, rate));
+        }
     }
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(passed));
     let panels = figures::panels(&rates);

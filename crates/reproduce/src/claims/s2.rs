@@ -116,11 +116,22 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let all = AtForce::all_of(&branches);
     let (gives_way, lasts) = ends(&jams);
+    let lines = ForceLine::all_of(&branches);
+    let with_kind = lines.iter().map(|line| (line.strain_rate, line.kind()));
+    let is_smooth = |rate: f64| with_kind.clone().any(|it| it == (rate, Kind::Smooth));
     let at_rates = all.chunk_by(|one, other| one.strain_rate == other.strain_rate);
-    let found: Vec<Option<bool>> = at_rates.chain([&jams[..]]).map(yields).collect();
-    let verdict = match all_hold(&found) {
-        Some(true) => Verdict::Reproduced,
-        Some(false) if found.iter().all(|one| *one == Some(false)) => Verdict::Differs,
+    let found = at_rates
+        .chain([&jams[..]])
+        .map(|jams| (jams[0].strain_rate, yields(jams)));
+    // A rate of both studies must yield in both.
+    let found = grouped(found, |it| it.0).into_iter().map(|(rate, found)| {
+        let parts: Vec<Option<bool>> = found.into_iter().map(|it| it.1).collect();
+        (rate, all_hold(&parts).filter(|_| !is_smooth(rate)))
+    });
+    let rates = Rates::of(found);
+    let verdict = match (rates.holding.len(), rates.failing.len()) {
+        (LEAST_RATES.., 0) => Verdict::Reproduced,
+        (0, LEAST_RATES..) => Verdict::Differs,
         _ => Verdict::Open,
     };
     let periods = longest(&rows);
@@ -130,19 +141,18 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let lasting = lasts.map_or("some do at every force".to_owned(), |one| {
         format!("from {} on none does", one.force)
     });
-    let lines = ForceLine::all_of(&branches);
-    let summary = PROSE.text("summary", values!(periods, yielding, lasting));
+    let rate = jams[0].strain_rate;
+    let summary = PROSE.text(
+        "summary",
+        values!(rate, periods, yielding, lasting, rates = rates.in_words()),
+    );
     let mut draft = Draft::of(PROSE);
     for one in &jams {
         let (force, runs) = (one.force, one.rows.len());
         let censored = runs - one.times.len();
         draft.quantity("time", values!(force, runs, censored), one.mean());
     }
-    draft.table("times", &[], jams.iter().map(AtForce::cells));
-    if !all.is_empty() {
-        let cells = all.iter().map(AtForce::cells);
-        draft.table("times at all strain rates", &[], cells);
-    }
+    draft.table("times", &[], jams.iter().chain(&all).map(AtForce::cells));
     draft.paragraph("method", values!(threshold = GIVEN_WAY));
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     let (chart, shown) = match courses(study, &jams)? {
@@ -156,7 +166,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         ),
     };
     draft.chart("yielding", values!(shown), chart)?;
-    let statistics = together(judged(&lines));
+    let is_told = |one: &&AtForce<'_>| {
+        rates.holding.contains(&one.strain_rate) || rates.failing.contains(&one.strain_rate)
+    };
+    let told = grouped(all.iter().filter(is_told), |one| one.strain_rate);
+    let told = told.into_iter().map(|(_, jams)| {
+        let rows: Vec<Row<'_>> = jams.iter().flat_map(|one| &one.rows).copied().collect();
+        behind(&rows, Row::force)
+    });
+    let statistics = Statistics::weakest(told);
     Ok(draft.concluded(verdict, summary, statistics))
 }
 
