@@ -207,7 +207,7 @@ fn axes_change_what_they_name() {
     place.write("led.toml", study(schedule, "drive.width", "[2.5, 2.6]"));
     place.refuses(
         "study plan led.toml",
-        &["are the same run", "led.toml:8", "drive.schedule leads"],
+        &["are the same run", "led.toml:9", "drive.schedule leads"],
     );
     place.write(
         "to.toml",
