@@ -90,10 +90,8 @@ fn array(values: &Values) -> ArrayRef {
 /// Values of a column from an array of NumPy, or from a list of texts.
 fn values(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Values> {
     let kinds = "an array of float64, int64 or bool, or a list of texts";
-    if given.hasattr("mask")? {
-        let reason = format!("column {name} is masked: it must be {kinds}; .filled(nan) makes one");
-        return Err(PyTypeError::new_err(reason));
-    }
+    let helpers = given.py().import("peristalsis._given")?;
+    helpers.call_method1("unmasked", (format!("column {name}"), given))?;
     if let Ok(reals) = given.extract::<PyReadonlyArray1<'_, f64>>() {
         return Ok(Values::Real(reals.as_slice()?.to_vec()));
     }

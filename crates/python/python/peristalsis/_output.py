@@ -193,8 +193,9 @@ class Output(Drive):
         places = {"place": place, "position": position}
         places = {name: None if value is None else number(name, value) for name, value in places.items()}
         width = None if width is None else whole("width", width, 0, 2**32 - 1)
+        ends = None if range is None else tuple(number("range", end) for end in range)
         options: dict[str, Any] = {
-            "view": view, "colour": colour, "range": range if range is None else tuple(number("range", end) for end in range), "wall": wall, **places,
+            "view": view, "colour": colour, "range": ends, "wall": wall, **places,
             "waves": waves, "width": width, "paper": paper, "bare": bare,
         }
         picture = Picture(_core.render(self._run, **options, vector=False))

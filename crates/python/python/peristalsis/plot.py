@@ -3,8 +3,8 @@
 Every function draws into `ax`, or into a new figure as wide as a journal's column, and answers the axes. New figures have
 the fonts, symbols and sizes of `STYLE`; axes of yours keep your settings. Colours are those of Okabe and Ito, which stay
 apart for colour-blind readers; red moves along the wave, blue against it. Beyond six curves marks or dashes tell apart what
-has the same colour. A legend that would hide something stands below the axes, for which a new
-figure grows; in a figure of yours it does so where that has a layout engine.
+has the same colour. A legend that would hide something stands below the axes, for which a new figure
+grows; in a figure of yours it does so where that has a layout engine.
 """
 
 from __future__ import annotations

@@ -107,6 +107,23 @@ fn yields(jams: &[AtForce<'_>]) -> Option<bool> {
     }
 }
 
+/// At which strain rates jams give way at some forces and last at larger ones; nothing is told where the flow rises smoothly,
+/// and where two studies have a strain rate, both must tell.
+fn told(all: &[AtForce<'_>], jams: &[AtForce<'_>], lines: &[ForceLine<'_>]) -> Rates {
+    let is_smooth = |rate: f64| {
+        let at_rate = lines.iter().find(|line| line.strain_rate == rate);
+        at_rate.is_some_and(|line| line.kind() == Kind::Smooth)
+    };
+    let at_rates = all.chunk_by(|one, other| one.strain_rate == other.strain_rate);
+    let found = at_rates
+        .chain([jams])
+        .map(|jams| (jams[0].strain_rate, yields(jams)));
+    Rates::of(grouped(found, |it| it.0).into_iter().map(|(rate, found)| {
+        let parts: Vec<Option<bool>> = found.into_iter().map(|it| it.1).collect();
+        (rate, all_hold(&parts).filter(|_| !is_smooth(rate)))
+    }))
+}
+
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let study = evidence.study("elastic-yielding")?;
     let (rows, branches) = (study.rows(), evidence.study("elastic-branches")?.rows());
@@ -116,19 +133,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let all = AtForce::all_of(&branches);
     let (gives_way, lasts) = ends(&jams);
-    let lines = ForceLine::all_of(&branches);
-    let with_kind = lines.iter().map(|line| (line.strain_rate, line.kind()));
-    let is_smooth = |rate: f64| with_kind.clone().any(|it| it == (rate, Kind::Smooth));
-    let at_rates = all.chunk_by(|one, other| one.strain_rate == other.strain_rate);
-    let found = at_rates
-        .chain([&jams[..]])
-        .map(|jams| (jams[0].strain_rate, yields(jams)));
-    // A rate of both studies must yield in both.
-    let found = grouped(found, |it| it.0).into_iter().map(|(rate, found)| {
-        let parts: Vec<Option<bool>> = found.into_iter().map(|it| it.1).collect();
-        (rate, all_hold(&parts).filter(|_| !is_smooth(rate)))
-    });
-    let rates = Rates::of(found);
+    let rates = told(&all, &jams, &ForceLine::all_of(&branches));
     let verdict = match (rates.holding.len(), rates.failing.len()) {
         (LEAST_RATES.., 0) => Verdict::Reproduced,
         (0, LEAST_RATES..) => Verdict::Differs,

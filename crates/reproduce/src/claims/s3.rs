@@ -57,6 +57,13 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         "method",
         values!(least = LEAST_JUMP_AGAINST_FORCE, clear = CLEAR, escaped),
     );
+    for line in &tight {
+        if let (Kind::Unclear, Some(height)) = (line.kind(), line.height())
+            && height.value > LEAST_JUMP_AGAINST_FORCE
+        {
+            draft.weakness("untold", values!(rate = line.strain_rate, height));
+        }
+    }
     draft.chart("branches", &[], branches(&lines, &tight))?;
     let panels = peaks(&rows, &tight);
     if !panels.is_empty() {

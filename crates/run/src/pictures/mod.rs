@@ -16,7 +16,6 @@ use peristalsis_figures::chart::{
 use peristalsis_figures::{
     ColourScale, Drawing, FigureError, Palette, Quantity, Scale, Units, Width,
 };
-
 use peristalsis_observe::Sample;
 
 use crate::error::RunError;

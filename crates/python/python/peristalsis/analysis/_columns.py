@@ -138,9 +138,11 @@ def pair(name: str, value: Uncertain | float | tuple[float, float]) -> tuple[flo
 
 def law_of(law: str | Mapping[str, Any]) -> str | dict[str, Any]:
     """A law as the core takes it."""
-    if not isinstance(law, (str, Mapping)):
-        raise TypeError(f'law is "power", "exponential" or {{"barrier": {{"power": p}}}}, not {law!r}')
-    return law if isinstance(law, str) else dict(law)
+    if isinstance(law, str):
+        return law
+    if isinstance(law, Mapping):
+        return dict(law)
+    raise TypeError(f'law is "power", "exponential" or {{"barrier": {{"power": p}}}}, not {law!r}')
 
 
 def result(kind: type[Result], answer: Any) -> Result:
