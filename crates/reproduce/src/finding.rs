@@ -167,7 +167,7 @@ pub struct WallVerdict {
     /// The verdict there: reproduced, differs or open.
     pub verdict: Verdict,
     /// The strain rates without any one of which the verdict would be another; none where no single one decides.
-    pub hangs_on: Vec<Without>,
+    pub depends_on: Vec<Without>,
     /// The number that decides, with its error, in a few words of markup.
     pub number: String,
     /// Why this verdict, in markup.
@@ -179,7 +179,7 @@ impl WallVerdict {
     /// where it would be the opposite.
     pub(crate) fn verdict_with_mark(&self) -> String {
         let is_opposite = |one: &Without| one.verdict != Verdict::Open;
-        let mark = match self.hangs_on.as_slice() {
+        let mark = match self.depends_on.as_slice() {
             [] => "",
             those if those.iter().any(is_opposite) => " ‡",
             _ => " †",
@@ -187,10 +187,10 @@ impl WallVerdict {
         format!("{}{mark}", self.verdict.name())
     }
 
-    /// "0.2 (differs); 0.1, 0.14 (open)": the strain rates that it hangs on, and what it would be without one of them.
-    pub(crate) fn hangs_on_in_words(&self) -> String {
+    /// "0.2 (differs); 0.1, 0.14 (open)": the strain rates that it depends on, and what it would be without one of them.
+    pub(crate) fn depends_on_in_words(&self) -> String {
         let words = |verdict: Verdict| {
-            let those = self.hangs_on.iter().filter(|one| one.verdict == verdict);
+            let those = self.depends_on.iter().filter(|one| one.verdict == verdict);
             let rates = listed(those.map(|one| one.strain_rate));
             (!rates.is_empty()).then(|| format!("{rates} ({})", verdict.name()))
         };

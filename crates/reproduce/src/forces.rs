@@ -35,7 +35,7 @@ pub(crate) enum Kind {
     /// It rises smoothly, the same from both starts.
     Smooth,
     /// The errors, or the distances of the forces, do not allow to say.
-    Unclear,
+    Undecided,
 }
 
 /// The runs under stress control by start and force.
@@ -186,7 +186,7 @@ impl<'a> ForceLine<'a> {
                 Kind::Jump
             }
             Some(height) if height.is_below(least) && self.flow.spans() => Kind::Smooth,
-            _ => Kind::Unclear,
+            _ => Kind::Undecided,
         }
     }
 }

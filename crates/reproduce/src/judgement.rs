@@ -26,11 +26,11 @@ pub(crate) const fn said(holds: Option<bool>) -> &'static str {
     match holds {
         Some(true) => "holds",
         Some(false) => "does not hold",
-        None => "cannot be told",
+        None => "undecided",
     }
 }
 
-/// Whether all parts of a claim hold: not, where one does not; `None` where one of the others cannot be told.
+/// Whether all parts of a claim hold: not, where one does not; `None` where one of the others is undecided.
 pub(crate) fn all_hold(parts: &[Option<bool>]) -> Option<bool> {
     if parts.contains(&Some(false)) {
         return Some(false);
@@ -52,7 +52,7 @@ pub(crate) fn all_hold_with(
 /// At which strain rates, or other values of a parameter, a claim holds.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rates {
-    /// Where it does, where it does not, and where that cannot be told, each ascending.
+    /// Where it does, where it does not, and where that is undecided, each ascending.
     pub(crate) holding: Vec<f64>,
     pub(crate) failing: Vec<f64>,
     pub(crate) unknown: Vec<f64>,
@@ -72,12 +72,12 @@ impl Rates {
         rates
     }
 
-    /// Whether the claim holds at nearly all strain rates: one alone decides nothing. `None` where too few can be told, or
+    /// Whether the claim holds at nearly all strain rates: one alone decides nothing. `None` where too few are decided, or
     /// they are divided.
     pub(crate) fn hold(&self) -> Option<bool> {
-        let told = self.holding.len() + self.failing.len();
-        let part = self.holding.len() as f64 / told as f64;
-        match told >= LEAST_RATES {
+        let decided = self.holding.len() + self.failing.len();
+        let part = self.holding.len() as f64 / decided as f64;
+        match decided >= LEAST_RATES {
             true if part >= MOST_RATES => Some(true),
             true if part <= 1.0 - MOST_RATES => Some(false),
             _ => None,
@@ -90,12 +90,12 @@ impl Rates {
         format!("{} of {all}", self.holding.len())
     }
 
-    /// "at *ε̇* = 0.05, 0.1; not at 0.03; unclear at 0.2".
+    /// "at *ε̇* = 0.05, 0.1; not at 0.03; undecided at 0.2".
     pub(crate) fn in_words(&self) -> String {
         let parts = [
             ("at *ε̇* = ", &self.holding),
             ("not at ", &self.failing),
-            ("unclear at ", &self.unknown),
+            ("undecided at ", &self.unknown),
         ];
         let texts: Vec<String> = parts
             .iter()
@@ -113,7 +113,7 @@ pub(crate) struct Part {
     /// Whether the claim holds there; `None` where the errors are too large to say.
     pub(crate) holds: Option<bool>,
     /// Strain rates without which it would be another, with what it would be.
-    pub(crate) hangs_on: Vec<(f64, Option<bool>)>,
+    pub(crate) depends_on: Vec<(f64, Option<bool>)>,
     /// How much is behind it.
     pub(crate) statistics: Statistics,
     /// The number that decides, with its error, in a few words.
@@ -139,12 +139,12 @@ impl Judgement {
         let on_wall = |part: Part| {
             let is_enough = part.statistics.suffice(needed);
             let verdict = Verdict::of(part.holds.filter(|_| is_enough));
-            let hangs_on = part.hangs_on.into_iter().filter(|_| is_enough);
-            let hangs_on = hangs_on.map(|(strain_rate, holds)| Without {
+            let depends_on = part.depends_on.into_iter().filter(|_| is_enough);
+            let depends_on = depends_on.map(|(strain_rate, holds)| Without {
                 strain_rate,
                 verdict: Verdict::of(holds),
             });
-            let hangs_on: Vec<Without> = hangs_on.collect();
+            let depends_on: Vec<Without> = depends_on.collect();
             let why = match is_enough {
                 true => part.why,
                 false => format!("too few runs or widths for a verdict; {}", part.why),
@@ -153,7 +153,7 @@ impl Judgement {
             WallVerdict {
                 wall,
                 verdict,
-                hangs_on,
+                depends_on,
                 number,
                 why,
             }
@@ -210,7 +210,7 @@ mod tests {
         Part {
             wall: wall.to_owned(),
             holds,
-            hangs_on: Vec::new(),
+            depends_on: Vec::new(),
             statistics: Statistics::of(4, 8, replicates, 320),
             number: String::new(),
             why: String::new(),
@@ -255,17 +255,17 @@ mod tests {
     }
 
     #[test]
-    fn what_a_verdict_hangs_on_is_said() {
-        let found = |hangs_on: &[(f64, Option<bool>)], replicates| {
+    fn what_a_verdict_depends_on_is_said() {
+        let found = |depends_on: &[(f64, Option<bool>)], replicates| {
             let part = Part {
-                hangs_on: hangs_on.to_vec(),
+                depends_on: depends_on.to_vec(),
                 ..part("a", Some(true), replicates)
             };
             let mut found = Judgement::of(vec![part], &Statistics::FOR_A_VERDICT);
             let wall = found.walls.remove(0);
-            (wall.verdict_with_mark(), wall.hangs_on_in_words())
+            (wall.verdict_with_mark(), wall.depends_on_in_words())
         };
-        let words = |verdict: &str, hangs_on: &str| (verdict.to_owned(), hangs_on.to_owned());
+        let words = |verdict: &str, depends_on: &str| (verdict.to_owned(), depends_on.to_owned());
         assert_eq!(found(&[], 10), words("reproduced", ""));
         let open = [(0.1, None), (0.2, None)];
         assert_eq!(found(&open, 10), words("reproduced †", "0.1, 0.2 (open)"));

@@ -255,7 +255,7 @@ impl<'a, T: AtRate<'a>> OnWall<T> {
         Part {
             wall: self.name.clone(),
             holds,
-            hangs_on: without.filter(|(_, others)| *others != holds).collect(),
+            depends_on: without.filter(|(_, others)| *others != holds).collect(),
             statistics: self.statistics(),
             number,
             why,
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn each_strain_rate_is_left_out_in_turn() {
-        let hangs_on = |told: &[Option<bool>]| {
+        let depends_on = |told: &[Option<bool>]| {
             let shown = |(rate, holds): (i32, &Option<bool>)| {
                 Rc::new(Shown {
                     strain_rate: f64::from(rate),
@@ -299,15 +299,15 @@ mod tests {
             };
             let judge = |one: &OnWall<Told>| one.rates(|told| told.0).hold();
             let part = wall.part(judge, String::new(), String::new());
-            (part.holds, part.hangs_on)
+            (part.holds, part.depends_on)
         };
         let (yes, no) = (Some(true), Some(false));
-        assert_eq!(hangs_on(&[yes; 5]), (yes, vec![]));
+        assert_eq!(depends_on(&[yes; 5]), (yes, vec![]));
         // Without one that holds two of three remain, which is not nearly all.
         let on = vec![(1.0, None), (2.0, None), (4.0, None)];
-        assert_eq!(hangs_on(&[yes, yes, no, yes, no]), (yes, on));
-        // An open verdict hangs on nothing.
-        assert_eq!(hangs_on(&[yes, no, no, yes, no]), (None, vec![]));
+        assert_eq!(depends_on(&[yes, yes, no, yes, no]), (yes, on));
+        // An open verdict depends on none.
+        assert_eq!(depends_on(&[yes, no, no, yes, no]), (None, vec![]));
     }
 
     #[test]

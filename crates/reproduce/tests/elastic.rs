@@ -405,9 +405,9 @@ fn neither_a_coarse_grid_nor_one_beside_the_transition_decides() {
         (&FORCES, &["smooth", "smooth", "jump", "jump", "jump"]),
         (
             &[0.002, 0.003, 0.004, 0.0055, 0.0065],
-            &["smooth", "smooth", "unclear", "unclear", "unclear"],
+            &["smooth", "smooth", "undecided", "undecided", "undecided"],
         ),
-        (&[0.002, 0.003, 0.0035, 0.004], &["unclear", "unclear"]),
+        (&[0.002, 0.003, 0.0035, 0.004], &["undecided", "undecided"]),
     ];
     for (forces, kinds) in cases {
         let rows = branches(&RATES, |force, _| forces.contains(&force).then_some(tube));
@@ -444,7 +444,7 @@ fn what_leaks_is_not_judged() {
     });
     let finding = of_branches("S3", &rows);
     let left_out = "0.07 (left out: 0.0045, 0.005, 0.0055, 0.0065)";
-    assert_eq!(finding.tables[0].rows[0][7..], [left_out, "unclear"]);
+    assert_eq!(finding.tables[0].rows[0][7..], [left_out, "undecided"]);
     assert!(!finding.summary.contains("0.00401"), "{}", finding.summary);
 }
 

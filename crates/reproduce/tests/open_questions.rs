@@ -166,7 +166,7 @@ fn each_corner_is_told_by_what_it_does() {
     assert_verdict(&finding, Verdict::Answered);
     for part in [
         "A fast flow is seen everywhere",
-        "by the start, are seen in the elastic wall only, whatever the grains",
+        "depending on the start, are seen in the elastic wall only, whatever the grains",
         "Back flow is seen in 1 of 4 corners: frictional grains, prescribed wall",
     ] {
         assert_says(&finding.summary, part);
@@ -568,10 +568,10 @@ fn a_throat_that_closes_becomes_a_displacement_pump() {
     assert!((end - 7.5e-3).abs() < 2e-4, "{end}");
     assert_says(
         &finding.summary,
-        "At 1.00, 0.008 instead of 0.001 lowers *J*/*J*_{max} by",
+        "At 1.00, one of 0.008 instead of 0.001 lowers *J*/*J*_{max} by",
     );
     assert_says(&finding.summary, "Cohesion changes");
-    assert_says(&finding.summary, "at 2 of 2 places");
+    assert_says(&finding.summary, "at 2 of 2 points");
     let rest = examine("Q13", &[("closure", &closure(3, 0.0))]);
     assert_says(&rest.summary, "at 0 of 2 places");
     // rho a^2/(a^2 + b^2/2) at b = a.

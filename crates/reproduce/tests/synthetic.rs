@@ -298,11 +298,11 @@ fn each_part_of_a_claim_can_fail_alone() {
         // The jammed flow stays below J_max.
         ("F1", |tube| tube.jump = 0.4, "not at 0.03"),
         // tau (w_c - w) goes as epsdot^-2, but the curves have a shape that no distance over epsdot^(3/2) brings together.
-        ("F3", |tube| tube.shape = 1.0, "source's pair: < 0.001"),
-        ("F4", |tube| tube.roughens = 0.0, "*β* = 3 does not hold"),
-        ("F4", |tube| tube.scaling = 0.0, "*β* = 3 holds"),
+        ("F3", |tube| tube.shape = 1.0, "source's pair: probability < 0.001"),
+        ("F4", |tube| tube.roughens = 0.0, "*β* = 3: does not hold"),
+        ("F4", |tube| tube.scaling = 0.0, "*β* = 3: holds"),
         ("F7", |tube| tube.slope = 2.0, "straight: "),
-        ("F7", |tube| tube.bend = 10.0, "straight: < 0.001"),
+        ("F7", |tube| tube.bend = 10.0, "straight: probability < 0.001"),
         (
             "F8",
             |tube| tube.alpha = 2.0,
@@ -331,7 +331,7 @@ fn each_part_of_a_claim_can_fail_alone() {
 /// 1/tau has a correction next to w_c, and chi_tau has it twice; chi_tau/tau^2 goes as 1/(w_c - w).
 #[test]
 fn a_correction_of_the_times_leaves_the_power_of_their_scatter() {
-    for (roughens, says) in [(1.0, "*β* = 3 holds"), (0.0, "*β* = 3 does not hold")] {
+    for (roughens, says) in [(1.0, "*β* = 3: holds"), (0.0, "*β* = 3: does not hold")] {
         let tube = Tube {
             bow: 20.0,
             roughens,
@@ -549,7 +549,7 @@ fn so_few_runs_from_jammed_cannot_tell_that_the_start_does_not_matter() {
         hysteresis: 0.0,
         ..SOURCE
     };
-    for (most, why) in [(9.0, "not at"), (0.0, "unclear at")] {
+    for (most, why) in [(9.0, "not at"), (0.0, "undecided at")] {
         let mut evidence = rows::evidence(&[]);
         let rows = tube.branches(Lattice::FINE);
         let kept = rows.only(|texts, numbers| {

@@ -215,7 +215,7 @@ fn slope() -> Finding {
         walls: vec![WallVerdict {
             wall: "24 × 26".to_owned(),
             verdict: Verdict::Differs,
-            hangs_on: vec![Without {
+            depends_on: vec![Without {
                 strain_rate: 0.2,
                 verdict: Verdict::Open,
             }],

@@ -215,7 +215,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         parts.push(Part {
             wall: wall.clone(),
             holds: judged.all().filter(|_| is_enough),
-            hangs_on: Vec::new(),
+            depends_on: Vec::new(),
             statistics: Statistics::weakest_at_one_rate(each),
             number: judged.number(),
             why: judged.why() + &left_out,

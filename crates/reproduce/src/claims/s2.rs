@@ -107,9 +107,9 @@ fn yields(jams: &[AtForce<'_>]) -> Option<bool> {
     }
 }
 
-/// At which strain rates jams give way at some forces and last at larger ones; nothing is told where the flow rises smoothly,
-/// and where two studies have a strain rate, both must tell.
-fn told(all: &[AtForce<'_>], jams: &[AtForce<'_>], lines: &[ForceLine<'_>]) -> Rates {
+/// At which strain rates jams give way at some forces and last at larger ones; undecided where the flow rises smoothly, and
+/// where one of two studies of a strain rate is.
+fn where_jams_yield(all: &[AtForce<'_>], jams: &[AtForce<'_>], lines: &[ForceLine<'_>]) -> Rates {
     let is_smooth = |rate: f64| {
         let at_rate = lines.iter().find(|line| line.strain_rate == rate);
         at_rate.is_some_and(|line| line.kind() == Kind::Smooth)
@@ -133,7 +133,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let all = AtForce::all_of(&branches);
     let (gives_way, lasts) = ends(&jams);
-    let rates = told(&all, &jams, &ForceLine::all_of(&branches));
+    let rates = where_jams_yield(&all, &jams, &ForceLine::all_of(&branches));
     let verdict = match (rates.holding.len(), rates.failing.len()) {
         (LEAST_RATES.., 0) => Verdict::Reproduced,
         (0, LEAST_RATES..) => Verdict::Differs,
@@ -171,15 +171,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         ),
     };
     draft.chart("yielding", values!(shown), chart)?;
-    let is_told = |one: &&AtForce<'_>| {
+    let is_decided = |one: &&AtForce<'_>| {
         rates.holding.contains(&one.strain_rate) || rates.failing.contains(&one.strain_rate)
     };
-    let told = grouped(all.iter().filter(is_told), |one| one.strain_rate);
-    let told = told.into_iter().map(|(_, jams)| {
+    let decided = grouped(all.iter().filter(is_decided), |one| one.strain_rate);
+    let decided = decided.into_iter().map(|(_, jams)| {
         let rows: Vec<Row<'_>> = jams.iter().flat_map(|one| &one.rows).copied().collect();
         behind(&rows, Row::force)
     });
-    let statistics = Statistics::weakest(told);
+    let statistics = Statistics::weakest(decided);
     Ok(draft.concluded(verdict, summary, statistics))
 }
 

@@ -58,10 +58,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         values!(least = LEAST_JUMP_AGAINST_FORCE, clear = CLEAR, escaped),
     );
     for line in &tight {
-        if let (Kind::Unclear, Some(height)) = (line.kind(), line.height())
+        if let (Kind::Undecided, Some(height)) = (line.kind(), line.height())
             && height.value > LEAST_JUMP_AGAINST_FORCE
         {
-            draft.weakness("untold", values!(rate = line.strain_rate, height));
+            draft.weakness("undecided", values!(rate = line.strain_rate, height));
         }
     }
     draft.chart("branches", &[], branches(&lines, &tight))?;
@@ -121,7 +121,7 @@ fn cells(rows: &[Row<'_>], line: &ForceLine<'_>) -> Vec<String> {
         _ if leaks_all_along => "leaks",
         Kind::Jump => "jump",
         Kind::Smooth => "smooth",
-        Kind::Unclear => "unclear",
+        Kind::Undecided => "undecided",
     };
     let left_out: &[f64] = if leaks_all_along { &[] } else { &line.leaking };
     let [peaks, dip] = cells_of_peaks(&flows);
@@ -157,7 +157,7 @@ fn heights(tight: &[&ForceLine<'_>]) -> Option<ChartPanel> {
     let point = |line: &&ForceLine<'_>| {
         let point = points("", line.height().map(|height| (line.strain_rate, height)));
         let point = match line.kind() {
-            Kind::Unclear => point.map(Points::open),
+            Kind::Undecided => point.map(Points::open),
             Kind::Jump | Kind::Smooth => point,
         };
         (line.strain_rate, point)

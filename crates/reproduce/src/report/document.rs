@@ -17,7 +17,7 @@ const MOST_COLUMNS: usize = 6;
 const MOST_CELLS: usize = 70;
 
 /// Above the strain rates without which a verdict would be another.
-const HANGS_ON: &str = "hangs on *ε\u{307}* =";
+const DEPENDS_ON: &str = "depends on *ε\u{307}* =";
 
 /// What stands above the table.
 const OPENING: &str = include_str!("document.md");
@@ -89,7 +89,7 @@ fn overview(report: &Report) -> ReportTable {
     }
     let head = ["claim", "verdict"].into_iter();
     let head = head.chain(walls.iter().map(|tally| tally.wall));
-    ReportTable::new("", head.chain(["the number"]), rows)
+    ReportTable::new("", head.chain(["result"]), rows)
 }
 
 /// A number with its name, its error and the value of the source.
@@ -165,7 +165,7 @@ fn digest(finding: &Finding) -> Option<ReportTable> {
         one.head.len() <= MOST_COLUMNS && (1..=MOST_CELLS).contains(&cells)
     });
     let found = if !finding.walls.is_empty() {
-        let hangs = finding.walls.iter().any(|wall| !wall.hangs_on.is_empty());
+        let depends = finding.walls.iter().any(|wall| !wall.depends_on.is_empty());
         let rows = finding.walls.iter().map(|wall| {
             let verdict = wall.verdict.name().to_owned();
             let mut row = vec![
@@ -174,13 +174,13 @@ fn digest(finding: &Finding) -> Option<ReportTable> {
                 wall.number.clone(),
                 wall.why.clone(),
             ];
-            if hangs {
-                row.push(wall.hangs_on_in_words());
+            if depends {
+                row.push(wall.depends_on_in_words());
             }
             row
         });
-        let head = ["wall", "verdict", "the number", "more", HANGS_ON];
-        ReportTable::new("", head.into_iter().take(4 + usize::from(hangs)), rows)
+        let head = ["wall", "verdict", "result", "details", DEPENDS_ON];
+        ReportTable::new("", head.into_iter().take(4 + usize::from(depends)), rows)
     } else if let Some(small) = small {
         small.clone()
     } else {

@@ -8,7 +8,7 @@ use crate::report::files::{FigureFiles, figure_files, table_names};
 use crate::report::{Program, Report, WallTally};
 
 /// Version of the layout of the file.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 #[derive(Serialize)]
 struct Document<'a> {

@@ -44,7 +44,7 @@ fn walls_stand_across_with_the_claims_that_each_meets() {
     let wall = |wall: &str, verdict| WallVerdict {
         wall: wall.to_owned(),
         verdict,
-        hangs_on: Vec::new(),
+        depends_on: Vec::new(),
         number: "*α* = 1.1 ± 0.2".to_owned(),
         why: "so".to_owned(),
     };
@@ -55,7 +55,7 @@ fn walls_stand_across_with_the_claims_that_each_meets() {
     report.examinations[1].finding.walls = walls;
     report.examinations[2].finding.walls = vec![wall("12 × 14", Verdict::Open)];
     let rows = rows(&report);
-    let head = "| claim | verdict | 24 × 26 | 12 × 14 | the number |";
+    let head = "| claim | verdict | 24 × 26 | 12 × 14 | result |";
     assert_eq!(rows[0], head);
     let found = "| reproduced: α = 1.1 ± 0.2 | differs: α = 1.1 ± 0.2 | |";
     assert!(rows[3].contains(found), "{}", rows[3]);

@@ -12,7 +12,7 @@ fn parsed(text: &str) -> Value {
 #[test]
 fn claims_have_verdict_numbers_and_studies_with_counts() {
     let found = parsed(&specimen().unwrap().json());
-    assert_eq!(found["format"], 1);
+    assert_eq!(found["format"], 2);
     assert_eq!(found["size"], "quick");
     assert_eq!(
         found["program"],

@@ -109,13 +109,13 @@ fn statistics(examination: &Examination) -> Markup {
 
 /// The verdict on each wall, and why.
 fn walls(walls: &[WallVerdict]) -> Markup {
-    let hangs = walls.iter().any(|one| !one.hangs_on.is_empty());
+    let depends = walls.iter().any(|one| !one.depends_on.is_empty());
     html! {
         div.scroll tabindex="0" role="region" aria-label="Verdict by wall" {
             table.walls {
                 thead {
-                    tr { th scope="col" { "Wall" } th scope="col" { "Verdict" } th scope="col" { "Number" } th scope="col" { "Why" }
-                        @if hangs { th scope="col" { "Hangs on " (rich("*ε\u{307}* =")) } }
+                    tr { th scope="col" { "Wall" } th scope="col" { "Verdict" } th scope="col" { "Result" } th scope="col" { "Details" }
+                        @if depends { th scope="col" { "Depends on " (rich("*ε\u{307}* =")) } }
                     }
                 }
                 tbody {
@@ -125,7 +125,7 @@ fn walls(walls: &[WallVerdict]) -> Markup {
                             td { (one.verdict.name()) }
                             td { (rich(&one.number)) }
                             td { (rich(&one.why)) }
-                            @if hangs { td { (one.hangs_on_in_words()) } }
+                            @if depends { td { (one.depends_on_in_words()) } }
                         }
                     }
                 }
