@@ -573,7 +573,7 @@ fn a_throat_that_closes_becomes_a_displacement_pump() {
     assert_says(&finding.summary, "Cohesion changes");
     assert_says(&finding.summary, "at 2 of 2 points");
     let rest = examine("Q13", &[("closure", &closure(3, 0.0))]);
-    assert_says(&rest.summary, "at 0 of 2 places");
+    assert_says(&rest.summary, "at 0 of 2 points");
     // rho a^2/(a^2 + b^2/2) at b = a.
     let moved = finding.tables[0]
         .rows
