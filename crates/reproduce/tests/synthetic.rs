@@ -298,11 +298,19 @@ fn each_part_of_a_claim_can_fail_alone() {
         // The jammed flow stays below J_max.
         ("F1", |tube| tube.jump = 0.4, "not at 0.03"),
         // tau (w_c - w) goes as epsdot^-2, but the curves have a shape that no distance over epsdot^(3/2) brings together.
-        ("F3", |tube| tube.shape = 1.0, "source's pair: probability < 0.001"),
+        (
+            "F3",
+            |tube| tube.shape = 1.0,
+            "source's pair: probability < 0.001",
+        ),
         ("F4", |tube| tube.roughens = 0.0, "*β* = 3: does not hold"),
         ("F4", |tube| tube.scaling = 0.0, "*β* = 3: holds"),
         ("F7", |tube| tube.slope = 2.0, "straight: "),
-        ("F7", |tube| tube.bend = 10.0, "straight: probability < 0.001"),
+        (
+            "F7",
+            |tube| tube.bend = 10.0,
+            "straight: probability < 0.001",
+        ),
         (
             "F8",
             |tube| tube.alpha = 2.0,

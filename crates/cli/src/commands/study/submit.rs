@@ -14,6 +14,14 @@ use crate::sources;
 
 /// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
 const WARNING: Duration = Duration::from_secs(60);
+/// Options of sbatch, long and short, and those of this command that set them.
+const SET_HERE: [([&str; 2], &str); 5] = [
+    (["--array", "-a"], "--tasks"),
+    (["--cpus-per-task", "-c"], "--processors"),
+    (["--time", "-t"], "--time"),
+    (["--partition", "-p"], "--partition"),
+    (["--account", "-A"], "--account"),
+];
 /// Shortest time of a task: twice the time kept for saving at its end.
 const SHORTEST: Duration = Duration::from_secs(240);
 
@@ -30,6 +38,15 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
             format!("{option:?} is not one option of sbatch"),
             "give one option at a time, such as --option=--mem-per-cpu=1G",
         ));
+    }
+    for option in &arguments.options {
+        let name = option.split(['=', ' ']).next().unwrap_or(option);
+        if let Some((_, own)) = SET_HERE.iter().find(|(names, _)| names.contains(&name)) {
+            return Err(Failure::usage(
+                format!("--option={option} would set {name} twice"),
+                format!("give it as {own} of this command"),
+            ));
+        }
     }
     if let Some(path) = &arguments.out {
         refuse_loss(path, [arguments.file.clone()])?;

@@ -392,6 +392,8 @@ fn a_script_that_could_not_work_is_not_written() {
         (&["--time", "3m"], "give 240 s or more"),
         (&["--option=--mem=1G\nrm -rf /"], "not one option"),
         (&["--option=mem"], "not one option"),
+        (&["--option=--array=1-9"], "give it as --tasks"),
+        (&["--option=-t 5"], "give it as --time"),
         (&["--tasks", "0"], "1..=10000"),
     ] {
         let mut call = words("study submit study.toml --slurm --store store");
