@@ -122,8 +122,19 @@ fn read_override(source: &Arc<Source>) -> Result<Table, String> {
             replace_leaf(&mut table, word, start..start + word.len());
             Ok(table)
         }
+        _ if starts_with_number(word) => Err(format!(
+            "{word} is no number: numbers have no unit behind them; lengths are in grain diameters d, times in t, and keys of \
+             units.* in SI units"
+        )),
         _ => Err(format!("this override is not `key=value`: {error}")),
     }
+}
+
+/// Whether a number begins a text that goes on with a letter, such as 3mm.
+fn starts_with_number(word: &str) -> bool {
+    let rest =
+        word.trim_start_matches(|letter: char| letter.is_ascii_digit() || "+-._".contains(letter));
+    rest.len() < word.len() && rest.starts_with(char::is_alphabetic)
 }
 
 /// Letters, digits and `_-./`, beginning with a letter, `/`, `./` or `../`: a name, of a file too, that needs no quotes on the

@@ -6,8 +6,8 @@ use peristalsis_physics::wall::Arrangement;
 
 use crate::RunError;
 
-/// Bytes of the program itself with its figures.
-const BYTES_OF_PROGRAM: f64 = 4e7;
+/// Bytes of the program itself while it draws its figures, at most: 48 to 65 million are measured.
+const BYTES_OF_PROGRAM: f64 = 7e7;
 /// Bytes of a frictionless grain in a prescribed tube, at most: some 450 are measured (BENCHMARKS.md), 960 of a wide dense one.
 const BYTES_OF_GRAIN: f64 = 1200.0;
 /// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered, at most: 1,200 to 2,100 are measured.
@@ -76,7 +76,7 @@ mod tests {
         let [rings, random] =
             ["staggered", "random"].map(|it| bytes(&format!("tube.arrangement={it}")));
         assert!(
-            rings < 5e7 && random > 2.23e8 && random < 3e8,
+            rings < 8e7 && random > 2.5e8 && random < 3.3e8,
             "{rings} {random}"
         );
     }

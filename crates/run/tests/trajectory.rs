@@ -73,6 +73,18 @@ fn read_lammps(folder: &Path) -> Vec<(u64, Vec<Vec<f64>>)> {
 }
 
 #[test]
+fn the_end_of_a_run_has_a_frame_where_the_interval_is_no_whole_number_of_steps() {
+    let (preset, settings) = MODELS[0];
+    let configuration = common::configuration(preset, settings);
+    let steps = configuration.drive.period().unwrap() / configuration.run.time_step;
+    // A quarter of a step less than a whole number, and so many that rounding up would come to more than the run.
+    let every = format!("{}", (10.0 - 0.25) / steps);
+    let plan = plan(&request(&every, ":"), &configuration);
+    assert_eq!(plan.interval(), 9);
+    assert_eq!(plan.frames(), configuration.run.steps() / 9 + 1);
+}
+
+#[test]
 fn frames_show_the_simulation_as_it_is_and_change_nothing_of_it() {
     for (preset, settings) in MODELS {
         let configuration = common::configuration(preset, settings);

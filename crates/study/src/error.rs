@@ -87,8 +87,8 @@ pub enum StudyError {
         /// How many there are.
         number: usize,
     },
-    /// A table holds no rows of finished runs.
-    #[error("{} holds no rows of finished runs: {reason}", path.display())]
+    /// A table is not one of rows of finished runs.
+    #[error("nothing is taken from {}: {reason}", path.display())]
     NotRows {
         /// The file.
         path: PathBuf,
@@ -123,7 +123,7 @@ impl StudyError {
         move |source| Self::Read { path, source }
     }
 
-    /// Says which file holds no rows of finished runs.
+    /// Says from which file no rows of finished runs are taken.
     pub fn not_rows(path: impl Into<PathBuf>) -> impl FnOnce(String) -> Self {
         let path = path.into();
         move |reason| Self::NotRows { path, reason }

@@ -92,7 +92,7 @@ fn entry(path: &Path) -> Value {
         .as_f64()
         .filter(|_| configuration.run.periods.is_some())
         .map(|time| time * configuration.drive.strain_rate);
-    let (drive, amplitude) = configuration.drive.control.amplitude();
+    let (drive, value) = configuration.drive.control.amplitude();
     let led = |parameter: ScheduledParameter| {
         let schedule = configuration.drive.schedule(parameter)?;
         let periods = configuration.run.periods.unwrap_or(f64::INFINITY);
@@ -106,8 +106,8 @@ fn entry(path: &Path) -> Value {
         "strain_rate": configuration.drive.strain_rate,
         "strain_rate_led": led(ScheduledParameter::StrainRate),
         "drive": drive,
-        "amplitude": amplitude,
-        "amplitude_led": led(drive),
+        "drive_value": value,
+        "drive_value_led": led(drive),
         // Of drive.strain_rate, unlike a summary's, which are the wavelengths that the wave has run.
         "periods_done": periods,
         "periods_asked": configuration.run.periods,
@@ -259,8 +259,8 @@ fn row(run: &Value) -> [String; 10] {
         plain("grains"),
         drive("strain_rate"),
         match run["drive"].as_str() {
-            Some("width") => format!("w = {} d", drive("amplitude")),
-            _ => format!("f^P = {}", drive("amplitude")),
+            Some("width") => format!("w = {} d", drive("drive_value")),
+            _ => format!("f^P = {}", drive("drive_value")),
         },
         match number("periods_asked") {
             Some(_) => done("periods_done", "periods_asked", ""),

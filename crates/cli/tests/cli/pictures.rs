@@ -39,7 +39,7 @@ fn a_finished_run_is_drawn_from_every_side() {
     for file in [
         "results/tube-side.png",
         "section.png",
-        "results/space-time.png",
+        "results/tube-space-time.png",
         "displaced.png",
         "pressure.png",
     ] {

@@ -131,8 +131,8 @@ pub struct TrajectoryPlan {
 }
 
 impl TrajectoryPlan {
-    /// The frames of a run that stands at step `now` and ends with step `end`, in its window; the interval is rounded to
-    /// whole steps.
+    /// The frames of a run that stands at step `now` and ends with step `end`, in its window; the interval is rounded
+    /// down to whole steps.
     ///
     /// # Errors
     /// [`RunError::Trajectory`] where the interval is less than a step or the window holds no step of the run.
@@ -265,14 +265,16 @@ fn interval(every: Option<Span>, configuration: &Configuration) -> Result<u64, R
         (None, Some(period)) => period / FRAMES_PER_PERIOD / configuration.run.time_step,
         (None, None) => (configuration.run.steps() / FRAMES_OF_A_STATIC_RUN) as f64,
     };
-    let (rounded, step) = (steps.round(), configuration.run.time_step);
+    // Down, so that the last frame is not one step behind the end; whole steps are whole up to rounding.
+    let whole = (steps * (1.0 + 1e-9)).floor();
     if let Some(span) = every
-        && rounded < 1.0
+        && whole < 1.0
     {
+        let step = configuration.run.time_step;
         let reason =
             format!("frames every {span}, which is {steps:.3} times a step of {step:.4} t");
         let help = "take a longer interval, or a shorter run.time_step";
         return Err(RunError::Trajectory { reason, help });
     }
-    Ok((rounded as u64).max(1))
+    Ok((whole as u64).max(1))
 }

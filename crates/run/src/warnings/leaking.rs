@@ -63,12 +63,13 @@ pub(super) fn bare_stretch(configuration: &Configuration) -> Option<Warning> {
     let stretches = places.iter().copied().zip(next);
     let (from, to) =
         stretches.max_by(|one, other| (one.1 - one.0).total_cmp(&(other.1 - other.0)))?;
+    let bare = to - from;
     let message = format!(
-        "no wall sphere stands between {from:.1} and {to:.1} d along the tube, and grains leave it there: the table must \
+        "no wall sphere stands for {bare:.1} d from {from:.1} d on along the tube, and grains leave it there: the table must \
          cover the whole length of {length} d (tube.waves x tube.wavelength), since it is not repeated"
     );
-    let bare = to - from > configuration.wall.sphere_diameter + configuration.grains.diameter_min;
-    bare.then_some(Warning {
+    let passing = configuration.wall.sphere_diameter + configuration.grains.diameter_min;
+    (bare > passing).then_some(Warning {
         key: "tube.places",
         message,
     })
@@ -171,7 +172,7 @@ mod tests {
         assert_eq!(bare(2), None);
         let message = bare(10).unwrap();
         assert!(
-            message.starts_with("no wall sphere stands between 19.5 and 100.0 d"),
+            message.starts_with("no wall sphere stands for 80.5 d from 19.5 d on"),
             "{message}"
         );
     }

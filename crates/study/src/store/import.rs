@@ -26,6 +26,9 @@ impl Store {
     /// [`StudyError::NotRows`] and errors of reading.
     pub fn import_table(&self, path: &Path) -> Result<Packed> {
         let rows = rows_of(path)?;
+        if rows.is_empty() {
+            return Err(StudyError::not_rows(path)("it has no rows".to_owned()));
+        }
         let survey = self.survey()?;
         let runs = survey.plan.runs().iter().map(|run| (run.identity, run));
         let runs: HashMap<Identity, &PlannedRun> = runs.collect();

@@ -34,7 +34,7 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     let name = match arguments.view {
         View::Side => "tube-side",
         View::Section => "tube-section",
-        View::SpaceTime => "space-time",
+        View::SpaceTime => "tube-space-time",
     };
     let usual = || folder.path().join(format!("{name}.{}", format.extension()));
     let out = arguments.out.clone().unwrap_or_else(usual);

@@ -74,6 +74,18 @@ pub(super) fn replicates(arguments: &RunArguments) -> Result<Option<Replicates>,
 /// Makes a folder for each seed; where one cannot be made, none is.
 fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicates, Failure> {
     let mut sources = arguments.configuration.clone();
+    let is_seed = |setting: &&String| {
+        setting
+            .split('=')
+            .next()
+            .is_some_and(|key| key.trim() == "run.seed")
+    };
+    if let Some(setting) = sources.overrides.iter().find(is_seed) {
+        return Err(Failure::usage(
+            format!("--seeds and --set {setting} exclude one another"),
+            "leave one of them out",
+        ));
+    }
     // The largest: where it can be a seed, all can.
     let largest = seeds.0.iter().max();
     let setting = largest.map(|seed| format!("run.seed={seed}"));

@@ -144,16 +144,23 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
 
 pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
     let path = &arguments.store.store;
+    let is_new = !path.exists();
     let store = match &arguments.study {
         Some(file) => Store::create(path, &sources::study(file)?)?,
         None => Store::open(path)?,
     };
-    let mut is_whole = true;
+    let (mut is_whole, mut is_empty) = (true, is_new);
     for file in &arguments.files {
         let packed = match is_archive(file) {
-            true => store.import_archive(file)?,
-            false => store.import_table(file)?,
+            true => store.import_archive(file),
+            false => store.import_table(file),
         };
+        if packed.is_err() && is_empty {
+            // What was made for this call holds nothing.
+            let _ = std::fs::remove_dir_all(path);
+        }
+        let packed = packed?;
+        is_empty = false;
         is_whole &= packed.refused.is_empty();
         for (identity, reason) in &packed.refused {
             let file = file.display();

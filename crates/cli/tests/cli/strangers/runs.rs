@@ -349,6 +349,14 @@ fn runs_are_listed_with_what_came_out() {
 #[test]
 fn seeds_run_side_by_side_and_their_scatter_is_shown() {
     let place = Place::new();
+    place.refuses(
+        "run SMALL --seeds 1..3 run.seed=5",
+        &["exclude one another"],
+    );
+    place.refuses(
+        "check SMALL tube.radius=3mm",
+        &["3mm is no number", "in grain diameters"],
+    );
     let all = place
         .does("run SMALL --seeds 1..3 --out many --json")
         .json();
@@ -437,7 +445,7 @@ fn runs_tell_what_a_schedule_leads_and_lengths_of_few_digits() {
     let listed = place.does("runs led");
     listed.shows(&["w = 2.5 to 2.9 d", "0.538 of 0.538"]);
     let json = place.does("runs led --json").json();
-    assert_eq!(json[0]["amplitude_led"], serde_json::json!([2.5, 2.9]));
+    assert_eq!(json[0]["drive_value_led"], serde_json::json!([2.5, 2.9]));
     assert_eq!(json[0]["strain_rate_led"], Value::Null);
     let drawn = std::fs::read_to_string(place.path("led/flow.svg")).unwrap();
     assert!(drawn.contains("2.5 to 2.9"), "the title of its figure");

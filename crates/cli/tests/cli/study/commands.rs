@@ -287,6 +287,13 @@ fn finished_runs_travel_by_table_and_by_archive() {
     place.does("study run study.toml --store rows");
     assert!(tables(&place, "rows")[..2] == before[..2]);
     place.call("study import rows study.toml").expect_code(2);
+    // A table that was cut off in its head; what was made for it is taken away again.
+    place.write("cut.csv", "identity,status\n");
+    place.refuses(
+        "study import cut cut.csv --study study.toml",
+        &["nothing is taken from cut.csv"],
+    );
+    assert!(!place.path("cut").exists());
 }
 
 #[test]
