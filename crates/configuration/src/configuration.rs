@@ -384,6 +384,16 @@ impl Configuration {
             / (6.0 * radius * radius * self.tube.length())
     }
 
+    /// Standard deviation of the volume fraction between seeds; `None` where all grains have one size.
+    ///
+    /// rho ((<d^6>/<d^3>^2 - 1)/N)^(1/2): the diameters of N grains are drawn independently.
+    pub fn volume_fraction_scatter(&self) -> Option<f64> {
+        let sizes = self.grains.distribution();
+        let variance = sizes.mean(6) / sizes.mean(3).powi(2) - 1.0;
+        let scatter = self.volume_fraction() * (variance / self.grains.number as f64).sqrt();
+        (scatter > 1e-9).then_some(scatter)
+    }
+
     /// Number density n = N d*^3/(pi a^2 L), d* the largest diameter.
     pub fn number_density(&self) -> f64 {
         let largest = self.grains.diameter_max;

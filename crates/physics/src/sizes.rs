@@ -159,7 +159,7 @@ mod tests {
             let parts = (0..number).map(|it| (f64::from(it) + 0.5) / f64::from(number));
             let diameters: Vec<f64> = parts.map(|part| sizes.diameter(part)).collect();
             assert!(diameters.is_sorted());
-            for power in [1, 3] {
+            for power in [1, 3, 6] {
                 let mean =
                     diameters.iter().map(|it| it.powi(power)).sum::<f64>() / f64::from(number);
                 let expected = sizes.mean(power);

@@ -41,6 +41,9 @@ pub struct Estimate {
     pub moving_spheres: u64,
     /// rho = N/(6 a^2 L), grain volumes averaged.
     pub volume_fraction: f64,
+    /// Standard deviation of the volume fraction between seeds, where sizes are drawn: rho ((⟨d^6⟩/⟨d^3⟩^2 - 1)/N)^(1/2).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub volume_fraction_scatter: Option<f64>,
     /// n = N d*^3/(pi a^2 L).
     pub number_density: f64,
     /// Length of the tube \[d\].
@@ -145,6 +148,7 @@ pub fn estimate_by(
         moving_spheres: moving_spheres(configuration),
         wall_spheres: configuration.tube.wall_spheres(),
         volume_fraction: configuration.volume_fraction(),
+        volume_fraction_scatter: configuration.volume_fraction_scatter(),
         number_density: configuration.number_density(),
         length: configuration.tube.length(),
         clear_openings: clear_openings(&configuration.at_its_hardest()),

@@ -44,13 +44,18 @@ fn tube(estimate: &Estimate) -> Vec<String> {
             )
         }
     };
+    let scatter = estimate
+        .volume_fraction_scatter
+        .map_or_else(String::new, |scatter| {
+            format!(" ± {scatter:.4} by the sizes that are drawn")
+        });
     let wall = match estimate.wall_spheres {
         0 => "smooth".to_owned(),
         spheres => format!("{spheres} spheres"),
     };
     let mut lines = vec![
         format!(
-            "grains            {} (volume fraction {:.4}, number density {:.4}){waiting}",
+            "grains            {} (volume fraction {:.4}{scatter}, number density {:.4}){waiting}",
             estimate.grains, estimate.volume_fraction, estimate.number_density
         ),
         format!(
