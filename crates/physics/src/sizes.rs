@@ -96,12 +96,16 @@ impl Sizes {
         }
     }
 
-    /// Mean of d^power over the grains, power 1 or 3 \[d^power\].
+    /// Mean of d^power over the grains, power 1 or more \[d^power\].
     pub fn mean(&self, power: i32) -> f64 {
         match self {
             Self::Uniform([least, largest]) if power == 1 => 0.5 * (least + largest),
-            Self::Uniform([least, largest]) => {
+            Self::Uniform([least, largest]) if power == 3 => {
                 (least + largest) * (least * least + largest * largest) / 4.0
+            }
+            Self::Uniform([least, largest]) => {
+                let terms = (0..=power).map(|k| least.powi(k) * largest.powi(power - k));
+                terms.sum::<f64>() / f64::from(power + 1)
             }
             Self::Lognormal {
                 bounds,
