@@ -338,7 +338,7 @@ fn of_study(error: &StudyError) -> Advice {
             "nothing that was finished is lost: make the store writable for this user, or the folder that is named; or take \
              another folder, such as a copy of the store",
         ),
-        StudyError::Io { source, .. } | StudyError::Format(FormatError::Io { source, .. })
+        StudyError::Format(FormatError::Io { source, .. })
             if matches!(
                 source.kind(),
                 ErrorKind::NotADirectory | ErrorKind::AlreadyExists
@@ -346,11 +346,12 @@ fn of_study(error: &StudyError) -> Advice {
         {
             wrong("a file has the name of a folder: name another")
         }
-        StudyError::Io { source, .. } if source.kind() == ErrorKind::InvalidFilename => {
+        StudyError::Format(FormatError::Io { source, .. })
+            if source.kind() == ErrorKind::InvalidFilename =>
+        {
             wrong("take a folder with a shorter path")
         }
-        StudyError::Io { .. }
-        | StudyError::Format(_)
+        StudyError::Format(_)
         | StudyError::Index { .. }
         | StudyError::Run {
             source: RunError::Format(_),

@@ -149,7 +149,9 @@ pub(crate) fn of_study(error: StudyError) -> PyErr {
     let text = error.to_string();
     match error {
         StudyError::Configuration(_) => ConfigurationError::new_err(text),
-        StudyError::Read { .. } | StudyError::Io { .. } => PyOSError::new_err(text),
+        StudyError::Read { .. } | StudyError::Format(FormatError::Io { .. }) => {
+            PyOSError::new_err(text)
+        }
         _ => StudyFailure::new_err(text),
     }
 }

@@ -24,17 +24,7 @@ pub enum StudyError {
         /// Why.
         source: std::io::Error,
     },
-    /// A folder or file of the store cannot be made, moved or read.
-    #[error("cannot {operation} {}: {source}", path.display())]
-    Io {
-        /// What was tried, as a verb phrase.
-        operation: &'static str,
-        /// The file or folder.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// A file cannot be written, or is not what it should be.
+    /// A file or folder cannot be made, moved, read or written, or is not what it should be.
     #[error(transparent)]
     Format(#[from] FormatError),
     /// The index of the store cannot be read or written.
@@ -110,9 +100,7 @@ impl StudyError {
     pub fn is_closed(&self) -> bool {
         match self {
             Self::Index { source, .. } => is_closed(source),
-            Self::Io { source, .. } | Self::Format(FormatError::Io { source, .. }) => {
-                peristalsis_formats::is_closed(source)
-            }
+            Self::Format(FormatError::Io { source, .. }) => peristalsis_formats::is_closed(source),
             _ => false,
         }
     }
@@ -135,10 +123,12 @@ impl StudyError {
         path: impl Into<PathBuf>,
     ) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.into();
-        move |source| Self::Io {
-            operation,
-            path,
-            source,
+        move |source| {
+            Self::Format(FormatError::Io {
+                operation,
+                path,
+                source,
+            })
         }
     }
 }

@@ -190,7 +190,10 @@ fn volume_fraction_counts_the_mean_cube_of_the_diameters() {
     // <d^6> = (1 - 0.8^7)/(7 0.2) = 0.564489: over <d^3>^2, less 1, 0.0364369.
     let scatter = mixed.volume_fraction_scatter().unwrap();
     assert!((scatter / mixed.volume_fraction() - (0.036_436_9_f64 / 274.0).sqrt()).abs() < 1e-7);
-    assert_eq!(preset("frictionless", &[""; 0]).volume_fraction_scatter(), None);
+    assert_eq!(
+        preset("frictionless", &[""; 0]).volume_fraction_scatter(),
+        None
+    );
 }
 
 #[test]

@@ -283,20 +283,9 @@ impl<'a> Shared<'a> {
     fn coordinate(&self, stop: &dyn Fn() -> bool, watch: &mut dyn FnMut(Sampling<'_>)) -> Ending {
         let mut ending = Ending::Complete;
         loop {
-            if stop() && ending == Ending::Complete {
-                ending = Ending::Stopped;
-            }
-            if self
-                .effort
-                .limit
-                .is_some_and(|limit| self.begin.elapsed() >= limit)
-                && ending == Ending::Complete
-            {
-                ending = Ending::TimeUp;
-            }
-            if ending != Ending::Complete {
-                self.is_to_stop.store(true, Ordering::Relaxed);
-            }
+            ending = ending.now(stop, self.begin, self.effort.limit);
+            let is_over = ending != Ending::Complete;
+            self.is_to_stop.fetch_or(is_over, Ordering::Relaxed);
             let mut desk = self.desk();
             let board = self.board(&mut desk);
             let (studies, of) = (desk.studies(), desk.decks.len());

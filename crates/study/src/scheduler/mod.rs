@@ -51,6 +51,17 @@ pub enum Ending {
     TimeUp,
 }
 
+impl Ending {
+    /// What the end is by now: once work is to end, the reason stays.
+    pub fn now(self, stop: &dyn Fn() -> bool, begin: Instant, limit: Option<Duration>) -> Self {
+        match self {
+            Self::Complete if stop() => Self::Stopped,
+            Self::Complete if limit.is_some_and(|limit| begin.elapsed() >= limit) => Self::TimeUp,
+            decided => decided,
+        }
+    }
+}
+
 /// State that the threads of a process share.
 struct Shared<'a> {
     store: &'a Store,
@@ -227,16 +238,10 @@ fn coordinate(
     let mut gauge = Gauge::new(&shared.common());
     loop {
         let is_last = shared.common().active == 0;
-        if ending == Ending::Complete && !is_last {
-            let limit = shared.effort.limit;
-            if stop() {
-                ending = Ending::Stopped;
-            } else if limit.is_some_and(|limit| begin.elapsed() >= limit) {
-                ending = Ending::TimeUp;
-            }
-            if ending != Ending::Complete {
-                shared.stop.store(true, Ordering::Relaxed);
-            }
+        if !is_last {
+            ending = ending.now(stop, begin, shared.effort.limit);
+            let is_over = ending != Ending::Complete;
+            shared.stop.fetch_or(is_over, Ordering::Relaxed);
         }
         let mut common = shared.common();
         if heartbeat.elapsed() > HEARTBEAT || is_last {

@@ -44,13 +44,14 @@ impl State {
     }
 
     pub(crate) fn of_name(name: &str) -> Self {
-        match name {
-            "checkpointed" => Self::Checkpointed,
-            "done" => Self::Done,
-            "failed" => Self::Failed,
-            "quarantined" => Self::Quarantined,
-            _ => Self::Pending,
-        }
+        let kept = [
+            Self::Checkpointed,
+            Self::Done,
+            Self::Failed,
+            Self::Quarantined,
+        ];
+        let found = kept.into_iter().find(|state| state.name() == name);
+        found.unwrap_or(Self::Pending)
     }
 }
 

@@ -1,3 +1,5 @@
+use peristalsis_formats::FormatError;
+
 use super::*;
 
 const TIMEOUT: Duration = Duration::from_secs(100);
@@ -219,7 +221,9 @@ fn a_path_that_is_too_long_for_the_index_is_called_so() {
     let folder = tempfile::tempdir().unwrap();
     let deep = folder.path().join(["x".repeat(100).as_str(); 5].join("/"));
     std::fs::create_dir_all(&deep).unwrap();
-    let Err(StudyError::Io { source, .. }) = Index::open(&deep.join("index.sqlite")) else {
+    let Err(StudyError::Format(FormatError::Io { source, .. })) =
+        Index::open(&deep.join("index.sqlite"))
+    else {
         panic!("it was opened, or refused for something else");
     };
     assert_eq!(source.kind(), std::io::ErrorKind::InvalidFilename);
