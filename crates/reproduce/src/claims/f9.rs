@@ -7,6 +7,9 @@ use super::prelude::*;
 const PROSE: Prose = Prose::new(include_str!("f9.md"));
 const STUDIES: &[&str] = &["branches-*", "loop-*", "dense-jams", "jam-lifetime"];
 
+/// J/Jmax to which the flow of a jam that broke up has fallen where its fall has ended.
+const FALLEN: f64 = 0.1;
+
 pub(super) const CLAIM: Claim = Claim::new("F9", PROSE, STUDIES, examine);
 
 /// How the runs from either start ended at one width.
@@ -336,8 +339,9 @@ struct Lifetime {
     mean: Option<Uncertain>,
     /// For how many periods they were watched.
     watched: f64,
-    /// J/Jmax at the end.
+    /// J/Jmax at the end, and that of each that broke up.
     flow: Uncertain,
+    flows: Vec<f64>,
 }
 
 impl Lifetime {
@@ -346,18 +350,22 @@ impl Lifetime {
         let is_void = |row: &&Row<'_>| coasts(row, row.number("transition_threshold"));
         let (void, jams): (Vec<Row<'_>>, Vec<Row<'_>>) = rows.iter().partition(is_void);
         let transitions: Vec<Transition> = jams.iter().map(Row::transition).collect();
-        let ended = transitions.iter().filter(|one| one.observed().is_some());
+        let ended = jams
+            .iter()
+            .filter(|row| row.transition().observed().is_some());
+        let flows: Vec<f64> = ended.map(Row::flow_rate_ratio).collect();
         let fit = fit_lifetime(Family::Gamma, &transitions)
             .or_else(|_| fit_lifetime(Family::Exponential, &transitions));
         Self {
             lattice: first.lattice(),
             strain_rate: first.strain_rate(),
             width: first.width(),
-            ended: [ended.count(), jams.len()],
+            ended: [flows.len(), jams.len()],
             void: void.len(),
             mean: fit.ok().map(|fit| fit.mean.scaled(first.strain_rate())),
             watched: largest(rows, |row| row.watched() * row.strain_rate()),
             flow: scattered(rows, Row::flow_rate_ratio),
+            flows,
         }
     }
 
@@ -402,9 +410,32 @@ fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row
         sum(|one| one.ended[1]),
     );
     let (tubes, all) = (found.len(), jams + void);
+    let broken = found.iter().filter(|one| one.ended[0] > 0);
+    let places = grouped(broken, |one| one.lattice).into_iter();
+    let places = places.map(|(lattice, tubes)| {
+        let wall = wall_name(lattice, STAGGERED);
+        let rates = grouped(tubes, |one| one.strain_rate).into_iter();
+        format!("{wall} at *ε̇* = {}", listed(rates.map(|(rate, _)| rate)))
+    });
+    let places = places.collect::<Vec<_>>().join(", ");
+    let falling = found.iter().flat_map(|one| one.flows.iter().copied());
+    let falling: Vec<f64> = falling.filter(|flow| *flow > FALLEN).collect();
+    let ends = [f64::min, f64::max].map(|of| falling.iter().copied().reduce(of));
+    let [least, most] = ends.map(|end| end.map_or("–".to_owned(), |flow| number(flow, 2)));
+    let falling = falling.len();
     draft.paragraph(
         "lifetimes",
-        values!(watched = number(watched, 0), tubes, void, ended, all),
+        values!(
+            watched = number(watched, 0),
+            tubes,
+            void,
+            ended,
+            all,
+            places,
+            falling,
+            least,
+            most
+        ),
     );
     draft.table("lifetimes", &[], found.iter().map(Lifetime::row));
 }
