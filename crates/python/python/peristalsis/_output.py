@@ -196,7 +196,7 @@ class Output(Drive):
         ends = None if range is None else tuple(number("range", end) for end in range)
         options: dict[str, Any] = {
             "view": view, "colour": colour, "range": ends, "wall": wall, **places,
-            "waves": waves, "width": width, "paper": paper, "bare": bare,
+            "waves": number("waves", waves), "width": width, "paper": paper, "bare": bare,
         }
         picture = Picture(_core.render(self._run, **options, vector=False))
         if path is not None and Path(path).suffix.lower() == ".svg":

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._arrays import Array
-from ._given import of_kind
+from ._given import of_kind, whole
 from ._simulation import Simulation
 from ._fit import set_title
 from ._style import DOUBLE_COLUMN, GREY, drawing
@@ -64,8 +64,7 @@ def snapshot(simulation: Simulation, ax: Axes | None = None, *, waves: int = 4, 
     """
     of_kind("simulation", simulation, Simulation, "a peristalsis.Simulation")
     all_waves = simulation.configuration.waves
-    if waves < 1 or not 0 <= first < all_waves:
-        raise ValueError(f"a snapshot shows 1 or more waves, from one of 0 to {all_waves - 1} on")
+    waves, first = whole("waves", waves, 1), whole("first", first, 0, all_waves - 1)
     length, heading = simulation.configuration.length, simulation.heading
     wavelength = length / all_waves
     begin, end = first * wavelength, min(first + waves, all_waves) * wavelength
