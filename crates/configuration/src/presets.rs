@@ -26,7 +26,7 @@ macro_rules! preset {
 #[rustfmt::skip]
 pub const PRESETS: &[Preset] = &[
     preset!("frictionless", "Frictionless grains in a prescribed wall with a coarse lattice: from rest, jams within the run."),
-    preset!("frictionless-source", "The same with 12 x 16 wall spheres, whose critical width falls with the strain rate as in the source."),
+    preset!("frictionless-source", "The same with 12 x 16 wall spheres, whose critical width falls with the strain rate about as fast as in the source."),
     preset!("frictionless-fine", "The same with a fine, nearly smooth lattice of wall spheres."),
     preset!("frictional", "Frictional grains in an elastic wall driven by a travelling force: jammed flow that gives way."),
     preset!("sand-pump", "Sand with its weight in a lying hose that a wave squeezes to half of its bore, in SI units."),
