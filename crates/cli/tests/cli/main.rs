@@ -193,6 +193,31 @@ impl Place {
         }
     }
 
+    /// Whether two folders hold the same run, but for the time that it took.
+    #[track_caller]
+    fn assert_same_run(&self, folders: [&str; 2]) {
+        let products = [
+            "config.toml",
+            "timeseries.parquet",
+            "profile.parquet",
+            "waves.parquet",
+            "flow.svg",
+            "flow.png",
+            "profile.svg",
+            "snapshot.svg",
+        ];
+        self.assert_same(folders, &products);
+        let [one, other] = folders.map(|folder| {
+            let mut summary = read_json(&self.path(folder).join("summary.json"));
+            let all = summary.as_object_mut().unwrap();
+            for key in ["seconds", "grain_steps_per_second", "trajectory"] {
+                all.remove(key);
+            }
+            summary
+        });
+        assert_eq!(one, other);
+    }
+
     /// Every file below, with content and time of change; folders with neither. A file that a running program puts in
     /// place meanwhile may be missing.
     fn inventory(&self) -> Inventory {

@@ -9,17 +9,7 @@ use crate::{Place, read_json, send};
 pub(crate) const LONG: &str =
     "run --preset frictionless-fine drive.width=2.6 drive.strain_rate=0.1 run.periods=150";
 
-/// The same of half a minute, for who does not wait for its end.
-pub(crate) fn longer() -> String {
-    LONG.replace("periods=150", "periods=5000")
-}
-
-/// Starts a run, sends it a signal after its first line of progress, and answers exit code and standard error.
-fn interrupted(place: &Place, line: &str, signal: &str) -> (Option<i32>, String) {
-    stopped_by(place.start(line), &[signal])
-}
-
-/// The same with a program that was started, and several signals at once.
+/// Sends a run these signals at once after its first line of progress, and answers exit code and standard error.
 pub(crate) fn stopped_by(mut child: Child, signals: &[&str]) -> (Option<i32>, String) {
     let mut errors = BufReader::new(child.stderr.take().unwrap());
     let mut said = String::new();
@@ -34,7 +24,7 @@ pub(crate) fn stopped_by(mut child: Child, signals: &[&str]) -> (Option<i32>, St
 fn an_interrupted_run_goes_on_to_the_same_bits() {
     let place = Place::new();
     let run = format!("{LONG} --trajectory gsd,vtp --trajectory-every 3.3 --csv --out");
-    let (code, said) = interrupted(&place, &format!("{run} stopped"), "INT");
+    let (code, said) = stopped_by(place.start(&format!("{run} stopped")), &["INT"]);
     assert_eq!(code, Some(130), "{said}");
     assert!(said.contains("stopped after"), "{said}");
     assert!(
@@ -66,40 +56,38 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
     place.does("run --resume stopped --csv");
     place.does(&format!("{run} through"));
     assert_eq!(rows("stopped"), 150 * 20);
+    place.assert_same_run(["stopped", "through"]);
     place.assert_same(
         ["stopped", "through"],
         &[
-            "timeseries.parquet",
             "timeseries.csv",
-            "profile.parquet",
-            "waves.parquet",
-            "config.toml",
-            "flow.svg",
             "trajectory.gsd",
             "trajectory.pvd",
             "contacts.pvd",
         ],
     );
-    let [one, other] =
-        ["stopped", "through"].map(|folder| read_json(&place.path(folder).join("summary.json")));
-    for (key, value) in one.as_object().unwrap() {
-        if !["seconds", "grain_steps_per_second", "trajectory"].contains(&key.as_str()) {
-            assert_eq!(value, &other[key], "{key}");
-        }
-    }
 }
 
+/// A batch system warns with USR1, GNU `timeout` signals the program and then its group, and a lost connection is HUP.
 #[test]
-fn a_terminated_run_ends_as_well_and_so_does_one_whose_batch_system_warns_it() {
-    for (signal, expected) in [("TERM", 143), ("USR1", 138)] {
+fn each_signal_ends_a_run_with_its_state_also_where_it_comes_twice() {
+    for (signals, codes) in [
+        (&["TERM"][..], &[143][..]),
+        (&["USR1"], &[138]),
+        (&["TERM", "TERM"], &[143]),
+        (&["INT", "TERM"], &[143, 130]),
+        (&["HUP", "HUP"], &[129]),
+    ] {
         let place = Place::new();
-        let (code, said) = interrupted(&place, &format!("{} --out stopped", longer()), signal);
-        assert_eq!(code, Some(expected), "{said}");
+        // Half a minute, if nothing ended it.
+        let run = LONG.replace("periods=150", "periods=5000");
+        let child = place.start(&format!("{run} --out stopped"));
+        let (code, said) = stopped_by(child, signals);
+        let is_told = code.is_some_and(|code| codes.contains(&code));
+        assert!(is_told, "{signals:?} {code:?} {said}");
         assert!(said.contains("stopped after"), "{said}");
-        assert_eq!(
-            read_json(&place.path("stopped/summary.json"))["status"],
-            "interrupted"
-        );
+        let summary = read_json(&place.path("stopped/summary.json"));
+        assert_eq!(summary["status"], "interrupted");
     }
 }
 

@@ -1,37 +1,8 @@
-//! Folders of runs, signals, full disks, going on.
+//! Folders of runs, kills, going on.
 
 use serde_json::Value;
 
 use crate::{Place, read_json};
-
-/// What a run leaves, but for the time that it took.
-const PRODUCTS: &[&str] = &[
-    "config.toml",
-    "timeseries.parquet",
-    "profile.parquet",
-    "waves.parquet",
-    "flow.svg",
-    "flow.png",
-    "profile.svg",
-    "snapshot.svg",
-];
-
-/// The summary in a folder, but for the time that the run took.
-fn outcome(place: &Place, folder: &str) -> Value {
-    let mut summary = read_json(&place.path(folder).join("summary.json"));
-    let all = summary.as_object_mut().unwrap();
-    for key in ["seconds", "grain_steps_per_second", "trajectory"] {
-        all.remove(key);
-    }
-    summary
-}
-
-#[track_caller]
-fn assert_same_run(place: &Place, folders: [&str; 2]) {
-    place.assert_same(folders, PRODUCTS);
-    let [one, other] = folders.map(|folder| outcome(place, folder));
-    assert_eq!(one, other);
-}
 
 #[test]
 fn runs_that_begin_at_once_have_a_folder_each() {
@@ -73,19 +44,6 @@ fn of_runs_that_begin_at_once_in_one_folder_one_gets_it() {
     );
 }
 
-/// The user's own `flow.png`.
-#[test]
-fn a_file_of_the_user_that_a_run_would_write_over_is_refused() {
-    for name in ["flow.png", "snapshot.svg", "timeseries.csv"] {
-        let place = Place::new();
-        std::fs::create_dir(place.path("mine")).unwrap();
-        place.write(&format!("mine/{name}"), "mine");
-        let before = place.inventory();
-        place.refuses("run SMALL --out mine", &["mine holds", name, "--out"]);
-        assert_eq!(place.inventory(), before);
-    }
-}
-
 #[test]
 fn a_resume_that_is_refused_changes_nothing() {
     let place = Place::new();
@@ -120,43 +78,6 @@ fn a_run_can_be_gone_on_with_from_its_first_step_after_a_kill() {
     );
 }
 
-#[cfg(unix)]
-#[test]
-fn a_disk_that_fills_with_frames_within_the_first_minute_leaves_a_state_and_a_true_promise() {
-    let place = Place::new();
-    let run = "run SMALL --trajectory lammps --trajectory-every 0.01 --checkpoint-every 1h";
-    crate::limits::with_small_files(&place, 256, &format!("{run} --out stopped"))
-        .expect_code(1)
-        .says(&["peristalsis run --resume stopped"]);
-    place.does("run --resume stopped");
-    place.does(&format!("{run} --out through"));
-    place.assert_same(["stopped", "through"], &["trajectory.lammpstrj"]);
-    assert_same_run(&place, ["stopped", "through"]);
-}
-
-/// GNU `timeout` signals the program and then its group; and a lost connection.
-#[cfg(unix)]
-#[test]
-fn signals_that_come_twice_at_once_and_a_lost_connection_end_a_run_with_its_state() {
-    use crate::signals::{longer, stopped_by};
-    for (signals, expected) in [
-        (["TERM", "TERM"], 143),
-        (["INT", "TERM"], 143),
-        (["HUP", "HUP"], 129),
-    ] {
-        let place = Place::new();
-        let child = place.start(&format!("{} --out stopped", longer()));
-        let (code, said) = stopped_by(child, &signals);
-        assert!(
-            code == Some(expected) || code == Some(130),
-            "{code:?} {said}"
-        );
-        assert!(said.contains("stopped after"), "{said}");
-        let summary = read_json(&place.path("stopped/summary.json"));
-        assert_eq!(summary["status"], "interrupted");
-    }
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn a_run_under_nohup_outlives_its_terminal() {
@@ -184,7 +105,7 @@ fn a_table_that_a_run_left_is_renewed_when_it_goes_on() {
     place.does("run --resume on --periods 6");
     place.does("run SMALL --csv --out whole run.periods=6");
     place.assert_same(["on", "whole"], &["timeseries.csv"]);
-    assert_same_run(&place, ["on", "whole"]);
+    place.assert_same_run(["on", "whole"]);
 }
 
 #[test]
@@ -219,7 +140,7 @@ fn a_complete_run_is_lengthened_to_the_run_that_was_asked_for_at_once() {
         assert_eq!(place.inventory(), before);
         place.does(&format!("run --resume on --periods {long}"));
         place.does(&format!("{run} --out whole run.periods={long}"));
-        assert_same_run(&place, ["on", "whole"]);
+        place.assert_same_run(["on", "whole"]);
         place.assert_same(
             ["on", "whole"],
             &[
@@ -295,11 +216,11 @@ fn a_state_in_a_file_goes_on_in_a_new_folder() {
     place.refuses("run --resume mine.snapshot", &["complete", "--periods"]);
     place.does("run --resume mine.snapshot --periods 4 --out on");
     place.does("run SMALL --out whole");
-    assert_same_run(&place, ["on", "whole"]);
+    place.assert_same_run(["on", "whole"]);
     place.does("run --resume mine.snapshot --periods 3");
     assert!(place.path("runs/mine-1/summary.json").is_file());
     place.does("run --resume short --periods 4 --out branch");
-    assert_same_run(&place, ["branch", "whole"]);
+    place.assert_same_run(["branch", "whole"]);
 
     let bytes = std::fs::read(place.path("mine.snapshot")).unwrap();
     place.write("mine.snapshot", &bytes[..bytes.len() / 2]);
@@ -365,10 +286,7 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
             let single = place.does(&format!(
                 "run SMALL --out one-{seed} --json run.seed={seed}"
             ));
-            assert_same_run(
-                &place,
-                [&format!("one-{seed}"), &format!("many/seed-{seed}")],
-            );
+            place.assert_same_run([&format!("one-{seed}"), &format!("many/seed-{seed}")]);
             single.json()["flow_rate_ratio"].as_f64().unwrap()
         })
         .collect();
@@ -400,7 +318,7 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
     );
     place.does("run --resume many --periods 6 --quiet");
     place.does("run SMALL --out longer run.seed=3 run.periods=6");
-    assert_same_run(&place, ["longer", "many/seed-3"]);
+    place.assert_same_run(["longer", "many/seed-3"]);
 }
 
 /// What an engineer reads of replicates, where J/Jmax says nothing.
@@ -468,10 +386,7 @@ fn seeds_that_were_stopped_go_on_to_the_same_runs() {
     place.does("run --resume many").shows(&["mean of 5 seeds"]);
     for seed in [1, 5] {
         place.does(&format!("{run} --out one-{seed} run.seed={seed}"));
-        assert_same_run(
-            &place,
-            [&format!("one-{seed}"), &format!("many/seed-{seed}")],
-        );
+        place.assert_same_run([&format!("one-{seed}"), &format!("many/seed-{seed}")]);
     }
 }
 
