@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use serde_json::Value;
 
-use crate::Place;
+use crate::{Place, warnings};
 
 /// What `check --json` with these words answers.
 fn check(words: &str) -> Value {
@@ -16,12 +16,9 @@ fn check(words: &str) -> Value {
 
 /// The keys of the warnings besides what a trial saw.
 fn warned(estimate: &Value) -> Vec<&str> {
-    let warnings = estimate["warnings"].as_array().unwrap().iter();
-    let keys = warnings.filter_map(|warning| {
-        let message = warning["message"].as_str().unwrap();
+    let keys = warnings(estimate).into_iter().filter_map(|(key, message)| {
         assert!(!message.is_empty());
-        let is_of_trial = message.starts_with("in a short trial");
-        (!is_of_trial).then(|| warning["key"].as_str().unwrap())
+        (!message.starts_with("in a short trial")).then_some(key)
     });
     keys.collect()
 }
@@ -191,10 +188,11 @@ fn units_in_si_are_told_and_the_words_say_them_too() {
 #[test]
 fn unphysical_softness_is_warned_of_with_what_to_do() {
     let message = |settings: &str| {
-        warnings(&format!("--preset frictionless {settings}{BEADS}"))
+        let estimate = check(&format!("--preset frictionless {settings}{BEADS}"));
+        warnings(&estimate)
             .into_iter()
-            .filter(|(key, _)| key == "units.stiffness")
-            .map(|(_, message)| message)
+            .filter(|(key, _)| *key == "units.stiffness")
+            .map(|(_, message)| message.to_owned())
             .find(|message| !message.contains("in a short trial"))
     };
     // c = 0.5: xi = 0.5/sqrt(2), far above a tenth; k (0.3536/0.1)^2 = 12.5 N/m would do at 43.70 Hz, and 12.56 at 43.8.
@@ -219,16 +217,6 @@ fn unphysical_softness_is_warned_of_with_what_to_do() {
     );
 }
 
-/// Keys and messages of what `check` warns of.
-fn warnings(words: &str) -> Vec<(String, String)> {
-    let estimate = check(words);
-    let text = |value: &Value| value.as_str().unwrap().to_owned();
-    let warnings = estimate["warnings"].as_array().unwrap().iter();
-    warnings
-        .map(|warning| (text(&warning["key"]), text(&warning["message"])))
-        .collect()
-}
-
 #[test]
 fn a_schedule_is_warned_of_for_what_it_leads_to() {
     let doubtful = "
@@ -242,10 +230,11 @@ frictionless drive.schedule=ramp drive.ramp_periods=100 run.periods=10 | drive.s
         let [words, key, part] = cells[..] else {
             panic!("{line}")
         };
-        let found = warnings(&format!("--preset {words}"));
+        let estimate = check(&format!("--preset {words}"));
+        let found = warnings(&estimate);
         let is_found = found
             .iter()
-            .any(|(of, message)| of == key && message.contains(part));
+            .any(|(of, message)| *of == key && message.contains(part));
         assert!(is_found, "{words}: {found:?}");
     }
 }
@@ -297,9 +286,10 @@ fn small_numbers_in_si_keep_their_digits() {
 #[test]
 fn a_tube_that_is_overfilled_is_warned_of_by_the_overlaps_that_a_trial_shows() {
     let settings = "grains.volume_fraction=0.5 drive.strain_rate=0.001 tube.waves=2";
-    let found = warnings(&format!("--preset frictionless {settings} {BEADS}"));
-    let is_packed = |(key, message): &(String, String)| {
-        key == "grains.volume_fraction"
+    let estimate = check(&format!("--preset frictionless {settings} {BEADS}"));
+    let found = warnings(&estimate);
+    let is_packed = |(key, message): &(&str, &str)| {
+        *key == "grains.volume_fraction"
             && message.starts_with("in a short trial the grains already overlap by up to")
     };
     assert!(found.iter().any(is_packed), "{found:?}");

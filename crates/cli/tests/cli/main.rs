@@ -258,6 +258,14 @@ fn send(signal: &str, child: &Child) {
     assert!(kill.status().unwrap().success());
 }
 
+/// Keys and messages of the warnings in a summary or in what `check` answers.
+fn warnings(report: &Value) -> Vec<(&str, &str)> {
+    let warnings = report["warnings"].as_array().unwrap().iter();
+    warnings
+        .map(|it| (it["key"].as_str().unwrap(), it["message"].as_str().unwrap()))
+        .collect()
+}
+
 fn read_json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Place, read_json};
+use crate::{Place, read_json, warnings};
 
 /// Glass beads of 1 mm on springs of 1 N/m.
 const BEADS: &str = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=1";
@@ -194,11 +194,9 @@ fn softness_that_the_run_shows_and_how_pressures_are_averaged_are_said() {
             "(a Newtonian fluid without load: ",
         ]);
     let summary = read_json(&place.path("results/summary.json"));
-    let warnings = summary["warnings"].as_array().unwrap();
-    assert!(warnings.iter().any(|warning| {
-        let message = warning["message"].as_str().unwrap();
-        message.starts_with("grains overlapped by up to")
-    }));
+    let found = warnings(&summary);
+    let softness = "grains overlapped by up to";
+    assert!(found.iter().any(|(_, it)| it.starts_with(softness)));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Lengths of runs, how far they are, and what a killed one leaves.
 
-use crate::{Place, read_json};
+use crate::{Place, read_json, warnings};
 
 /// The files of killed programs below a folder.
 #[cfg(unix)]
@@ -163,8 +163,8 @@ fn thresholds_that_no_flow_crosses_are_warned_of_by_check_run_and_summary() {
     let key = "observe.transition_threshold";
     let warned = |settings: &str| {
         let report = place.does(&format!("check SMALL {settings} --json")).json();
-        let warnings = report["warnings"].as_array().unwrap().iter();
-        warnings.filter(|it| it["key"] == key).count()
+        let of_key = warnings(&report).into_iter().filter(|(of, _)| *of == key);
+        of_key.count()
     };
     for threshold in ["-1", "0.005", "-0.004", "0.999", "1.5", "0"] {
         assert_eq!(warned(&format!("{key}={threshold}")), 1, "{threshold}");

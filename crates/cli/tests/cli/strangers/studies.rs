@@ -2,16 +2,8 @@
 
 #[cfg(unix)]
 use crate::limits::with_small_files;
-use crate::study::quick;
+use crate::study::{finished, quick};
 use crate::{Outcome, Place};
-
-/// A place with a finished study of four runs in the folder `kept`.
-fn finished() -> Place {
-    let place = Place::new();
-    place.write("study.toml", quick());
-    place.does("study run study.toml --store kept --quiet");
-    place
-}
 
 /// A study printed "transition at ... ± 0.025" for the values between which most runs change.
 #[test]
@@ -48,7 +40,7 @@ fn files_that_cannot_be_imported_are_named_as_bad_input() {
         "none.csv",
         "none.tar",
     ] {
-        let said = place.refuses(&format!("study import kept {name}"), &[name]);
+        let said = place.refuses(&format!("study import store {name}"), &[name]);
         assert!(!said.message().contains("mend"), "{}", said.message());
     }
 }
@@ -64,7 +56,7 @@ fn values_that_are_no_numbers_are_refused_with_their_place() {
         let at = format!("wrong.toml:{}:1", line + 1);
         place.refuses("study plan wrong.toml", &[&at, "is not a finite number"]);
     }
-    place.does("study export kept --out tables");
+    place.does("study export store --out tables");
     let table = std::fs::read_dir(place.path("tables")).unwrap();
     let mut paths = table.map(|entry| entry.unwrap().path());
     let is_rows = |path: &std::path::PathBuf| {
@@ -104,7 +96,10 @@ fn values_that_are_no_numbers_are_refused_with_their_place() {
 #[test]
 fn what_is_replaced_is_said() {
     let place = finished();
-    for line in ["study pack kept all.tar", "study export kept --out tables"] {
+    for line in [
+        "study pack store all.tar",
+        "study export store --out tables",
+    ] {
         let said = place.does(line).message();
         assert!(!said.contains("replaces"), "{said}");
         place.does(line).says(&["replaces"]);
@@ -220,23 +215,23 @@ fn axes_change_what_they_name() {
 #[test]
 fn what_a_store_lacks_is_told() {
     let place = finished();
-    place.does("study export kept --out tables");
+    place.does("study export store --out tables");
     place.does("study import rows tables/tested.csv --study study.toml");
     place
         .does("study pack rows rows.tar")
         .says(&["left out", "4 finished runs"]);
-    let runs = std::fs::read_dir(place.path("kept/runs")).unwrap();
+    let runs = std::fs::read_dir(place.path("store/runs")).unwrap();
     let lost = runs.map(|entry| entry.unwrap().path()).next().unwrap();
     std::fs::remove_dir_all(lost).unwrap();
     place
-        .call("study verify kept")
+        .call("study verify store")
         .expect_code(1)
         .shows(&["3 finished runs", "its seal, done.json, is gone"]);
     place.write("empty.tar", "");
-    place.refuses("study import kept empty.tar", &["it is empty"]);
+    place.refuses("study import store empty.tar", &["it is empty"]);
     place.refuses(
-        "study run kept",
-        &["is a store", "study run kept/study.toml --store kept"],
+        "study run store",
+        &["is a store", "study run store/study.toml --store store"],
     );
 }
 
@@ -244,11 +239,11 @@ fn what_a_store_lacks_is_told() {
 #[test]
 fn what_an_archive_lacks_is_told() {
     let place = finished();
-    let runs = std::fs::read_dir(place.path("kept/runs")).unwrap();
+    let runs = std::fs::read_dir(place.path("store/runs")).unwrap();
     let changed = runs.map(|entry| entry.unwrap().path()).next().unwrap();
     std::fs::write(changed.join("summary.json"), "{}").unwrap();
     place
-        .call("study pack kept all.tar")
+        .call("study pack store all.tar")
         .expect_code(1)
         .shows(&["3 finished runs in all.tar"])
         .says(&["is left out", "summary.json", "study verify"]);
@@ -259,7 +254,7 @@ fn what_an_archive_lacks_is_told() {
 #[test]
 fn a_full_disk_is_an_error_of_an_export() {
     let place = finished();
-    let said = with_small_files(&place, 0, "study export kept --out tables");
+    let said = with_small_files(&place, 0, "study export store --out tables");
     said.expect_code(1).says(&["tables", "File too large"]);
     let tables = std::fs::read_dir(place.path("tables"));
     assert_eq!(tables.map_or(0, Iterator::count), 0);

@@ -2,14 +2,8 @@
 
 use serde_json::Value;
 
-use super::{STUDY, place_of, quick, tables};
+use super::{STUDY, finished, place_of, quick, tables};
 use crate::{Outcome, Place, words};
-
-fn finished() -> Place {
-    let place = place_of(&quick());
-    place.does("study run study.toml --store store");
-    place
-}
 
 fn status(place: &Place) -> Value {
     place.does("study status store --json").json()

@@ -46,6 +46,13 @@ fn place_of(text: &str) -> Place {
     place
 }
 
+/// A place with a finished study of four runs in the folder `store`.
+pub(crate) fn finished() -> Place {
+    let place = place_of(&quick());
+    place.does("study run study.toml --store store");
+    place
+}
+
 /// The science tables of a store in this place: rows as CSV and Parquet, and time series.
 fn tables(place: &Place, store: &str) -> [Vec<u8>; 3] {
     let out = format!("{store}-tables");
