@@ -64,6 +64,8 @@ waves = 10 -> waves = 99999999 | OutOfRange | tube.waves | 8 | at most 1e6
 radius = 1.5 -> radius = "wide" | WrongType | tube.radius | 6 | allowed: a number
 waves = 10 -> waves = 2.5 | WrongType | tube.waves | 8 | allowed: a whole number
 waves = 10 -> waves = 99999999999999999999 | OutOfRange | tube.waves | 8 | a whole number
+waves = 10 -> waves = 0xffffffffffffffff | OutOfRange | tube.waves | 8 | a whole number | is too large
+periods = 40 -> &\nseed = -1 | OutOfRange | run.seed | 17 | at most 9223372036854775807
 law = "linear" -> law = "linera" | WrongType | contact.law | 4 | did you mean "linear"?
 law = "linear" -> law = 3 | WrongType | contact.law | 4 | "linear", "hertz"
 periods = 40 -> periods = 1979-05-27 | WrongType | run.periods | 16 | a number
