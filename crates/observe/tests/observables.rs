@@ -66,6 +66,27 @@ fn free_flight(heading: f64) -> Simulation {
     Simulation::new(bodies, wall(heading, 0.5), parameters())
 }
 
+/// An elastic wall at rest.
+fn elastic_wall(lattice: Lattice, mean_radius: f64) -> ElasticWall {
+    ElasticWall::new(ElasticParameters {
+        lattice,
+        mean_radius,
+        network: ElasticNetwork::default(),
+        force_amplitude: Schedule::constant(0.004),
+        frequency: Schedule::constant(4e-3),
+        heading: 1.0,
+        waveform: Waveform::Sine,
+        angle: DriveAngle::Reference,
+    })
+}
+
+/// What happens within the first steps of a simulation.
+fn sample_after(mut simulation: Simulation, steps: u64) -> Sample {
+    let mut observer = Observer::new(&simulation);
+    simulation.advance(steps).expect("no sample diverges");
+    sampled(&mut observer, &simulation)
+}
+
 /// Ends the interval and answers what happened in it.
 fn sampled(observer: &mut Observer, simulation: &Simulation) -> Sample {
     let view = View::of(simulation);
@@ -76,11 +97,8 @@ fn sampled(observer: &mut Observer, simulation: &Simulation) -> Sample {
 #[test]
 fn the_flow_of_free_flight_is_that_of_the_velocities() {
     for heading in [1.0, -1.0] {
-        let mut simulation = free_flight(heading);
-        let mut observer = Observer::new(&simulation);
         // The last grain goes backward through the seam.
-        simulation.advance(40).unwrap();
-        let sample = sampled(&mut observer, &simulation);
+        let sample = sample_after(free_flight(heading), 40);
         let sum = heading * 1.4;
         assert!((sample.flow_rate - sum / 20.0).abs() < 1e-12);
         assert!((sample.flow_rate_instantaneous - sum / 20.0).abs() < 1e-12);
@@ -99,14 +117,11 @@ fn the_flow_of_free_flight_is_that_of_the_velocities() {
 
 #[test]
 fn a_grain_outside_counts_in_the_raw_columns_only() {
-    let mut simulation = free_flight(1.0);
     // Beyond R + d/2 at any phase, and beyond the reach of the wall.
-    let mut bodies = simulation.bodies().clone();
+    let mut bodies = free_flight(1.0).bodies().clone();
     bodies.position[3].x = 8.0;
-    simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
-    let mut observer = Observer::new(&simulation);
-    simulation.advance(20).unwrap();
-    let sample = sampled(&mut observer, &simulation);
+    let simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
+    let sample = sample_after(simulation, 20);
     assert_eq!((sample.escaped, sample.inside), (1.0, 3.0));
     assert!((sample.flow_rate_ratio - 0.5).abs() < 1e-12);
     assert!((sample.flow_rate_ratio_raw - 0.35).abs() < 1e-12);
@@ -124,10 +139,8 @@ fn the_body_force_works_on_the_grains_inside() {
             body_force,
             ..parameters()
         };
-        let mut simulation = Simulation::new(bodies, wall(heading, 0.5), parameters);
-        let mut observer = Observer::new(&simulation);
-        simulation.advance(20).unwrap();
-        let sample = sampled(&mut observer, &simulation);
+        let simulation = Simulation::new(bodies, wall(heading, 0.5), parameters);
+        let sample = sample_after(simulation, 20);
         assert_eq!(sample.escaped, 1.0);
         // After the time 1 three grains at 0.5 have fallen from rest across, and their mean axial velocity was 0.495. That
         // across of the fourth counts with its velocity at the end, twice the mean.
@@ -512,16 +525,7 @@ fn the_shape_of_a_prescribed_tube_is_its_wave() {
 /// Every ring has the same weight in the volume, 14 of them in a wave.
 #[test]
 fn the_clear_volume_of_an_elastic_wall_is_that_of_its_rings() {
-    let elastic = ElasticWall::new(ElasticParameters {
-        lattice: LATTICE,
-        mean_radius: 6.0,
-        network: ElasticNetwork::default(),
-        force_amplitude: Schedule::constant(0.0),
-        frequency: Schedule::constant(0.1),
-        heading: 1.0,
-        waveform: Waveform::Sine,
-        angle: DriveAngle::Reference,
-    });
+    let elastic = elastic_wall(LATTICE, 6.0);
     let radius = |ring: u32| 5.5 + 0.1 * f64::from(ring % 14);
     let mut bodies = Bodies::grains_at_rest(Vec::new(), Vec::new());
     for sphere in 0..elastic.lattice().spheres() {
@@ -542,24 +546,13 @@ fn the_clear_volume_of_an_elastic_wall_is_that_of_its_rings() {
 
 #[test]
 fn faults_of_an_elastic_wall_are_noted_once_with_place_and_cause() {
-    let parameters_of_wall = ElasticParameters {
-        lattice: Lattice {
-            spheres_per_ring: 22,
-            rings_per_wave: 24,
-            waves: 2,
-            wavelength: 20.0,
-            sphere_diameter: 1.0,
-            staggered: true,
-        },
-        mean_radius: 3.5,
-        network: ElasticNetwork::default(),
-        force_amplitude: Schedule::constant(0.004),
-        frequency: Schedule::constant(4e-3),
-        heading: 1.0,
-        waveform: Waveform::Sine,
-        angle: DriveAngle::Reference,
+    let lattice = Lattice {
+        spheres_per_ring: 22,
+        rings_per_wave: 24,
+        wavelength: 20.0,
+        ..LATTICE
     };
-    let elastic = ElasticWall::new(parameters_of_wall);
+    let elastic = elastic_wall(lattice, 3.5);
     let simulation = |changed: Option<(usize, DVec3)>| {
         let mut bodies = Bodies::grains_at_rest(Vec::new(), Vec::new());
         for sphere in 0..elastic.lattice().spheres() {
@@ -746,8 +739,7 @@ fn sizes_that_lie_apart_are_segregated() {
             ..parameters()
         };
         let simulation = Simulation::new(bodies.clone(), wall(-1.0, 0.5), parameters);
-        let mut observer = Observer::new(&simulation);
-        let found = sampled(&mut observer, &simulation).segregation;
+        let found = sample_after(simulation, 0).segregation;
         let is = |found: Option<f64>, expected: f64| (found.unwrap() - expected).abs() < 1e-12;
         assert!(is(found.radial, 1.0), "{found:?}");
         assert!(is(found.belly, 1.0), "{found:?}");
