@@ -13,7 +13,7 @@ use std::process::ExitCode;
 
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Simulation};
-use peristalsis_run::{Configuration, assemble, walls};
+use peristalsis_run::{Configuration, Run, walls};
 
 /// Numbers of a grain in a file to start from.
 const COLUMNS: usize = 10;
@@ -47,17 +47,14 @@ impl Request {
     }
 
     fn simulation(&self) -> Result<Simulation, Box<dyn Error>> {
-        let configuration = Configuration::from_preset(&self.preset, &self.settings)?;
-        let (packed, _) = assemble(&configuration)?;
+        let run = Run::new(Configuration::from_preset(&self.preset, &self.settings)?)?;
+        let packed = run.simulation();
         let Some(path) = &self.from else {
-            return Ok(packed);
+            return Ok(packed.clone());
         };
         let bodies = placed(&std::fs::read_to_string(path)?)?;
-        Ok(Simulation::new(
-            bodies,
-            walls(&configuration),
-            *packed.parameters(),
-        ))
+        let wall = walls(run.configuration());
+        Ok(Simulation::new(bodies, wall, *packed.parameters()))
     }
 
     fn write(&self) -> Result<(), Box<dyn Error>> {

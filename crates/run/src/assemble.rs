@@ -18,20 +18,12 @@ use crate::memory::check_memory;
 /// to relax more than fit in memory.
 const LARGEST_VOLUME_FRACTION: f64 = 10.0;
 
-/// Packs the grains and makes the simulation of a configuration, at time 0.
+/// Packs the grains and makes the simulation of a configuration, at time 0; `stop` is asked often meanwhile whether to stop.
 ///
 /// # Errors
 /// [`RunError::TooManyGrains`] or [`RunError::Engine`] where the grains do not fit, [`RunError::NoMemory`] where there is
-/// no room for them.
-pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingReport), RunError> {
-    assemble_unless(configuration, &|| false)
-}
-
-/// The same; `stop` is asked often, while the grains are packed, whether to stop.
-///
-/// # Errors
-/// As [`assemble`]; [`RunError::Engine`] where it was asked to stop, too.
-pub(crate) fn assemble_unless(
+/// no room for them; [`RunError::Engine`] where it was asked to stop, too.
+pub(crate) fn assemble(
     configuration: &Configuration,
     stop: &dyn Fn() -> bool,
 ) -> Result<(Simulation, PackingReport), RunError> {

@@ -1,8 +1,8 @@
 //! One run: from a configuration to its record.
 //!
-//! [`assemble`] turns a [`Configuration`] into a simulation; [`Run`] advances it sample by sample and keeps what was
-//! measured; [`Summary`] is the outcome in numbers; [`RunFolder`] writes tables, figures and state, each file whole or
-//! not at all; [`Trajectory`] writes the spheres frame by frame. Nothing here prints or exits.
+//! [`Run`] makes the simulation of a [`Configuration`], advances it sample by sample and keeps what was measured;
+//! [`Summary`] is the outcome in numbers; [`RunFolder`] writes tables, figures and state, each file whole or not at all;
+//! [`Trajectory`] writes the spheres frame by frame. Nothing here prints or exits.
 
 #![forbid(unsafe_code)]
 
@@ -27,7 +27,7 @@ mod tables;
 mod trajectory;
 mod warnings;
 
-pub use assemble::{PlacedGrains, assemble, scheduled_wavelengths, walls};
+pub use assemble::{PlacedGrains, scheduled_wavelengths, walls};
 pub use error::RunError;
 pub use estimate::{Estimate, estimate, estimate_by, restitution_at_wave_speed, snapshot_numbers};
 pub use folder::{RunFolder, next_folder, read_state, write_state};

@@ -13,7 +13,7 @@ use peristalsis_formats::FormatError;
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
 use peristalsis_observe::Orientations;
 
-use crate::assemble::{PlacedGrains, assemble_unless, parameters, place, walls};
+use crate::assemble::{PlacedGrains, assemble, parameters, place, walls};
 use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 use crate::stopwatch::Stopwatch;
@@ -105,7 +105,7 @@ impl Run {
         configuration: Configuration,
         stop: &dyn Fn() -> bool,
     ) -> Result<Self, RunError> {
-        let (simulation, packing) = assemble_unless(&configuration, stop)?;
+        let (simulation, packing) = assemble(&configuration, stop)?;
         Ok(Self::beginning(configuration, simulation, packing))
     }
 

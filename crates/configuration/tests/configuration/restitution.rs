@@ -15,20 +15,23 @@ fn restitution(configuration: &Configuration, speed: f64) -> f64 {
 
 #[test]
 fn restitution_stands_for_the_damping_of_either_law() {
-    for (name, speed) in [("frictionless", 0.5), ("frictional", 20.0 * 4.01e-3)] {
+    for (name, law, speed) in [
+        ("frictionless", "contact.law=linear", 0.5),
+        ("frictional", "contact.law=hertz", 20.0 * 4.01e-3),
+        (
+            "frictional",
+            "contact.dissipation_form=printed",
+            20.0 * 4.01e-3,
+        ),
+    ] {
         for wanted in [0.2, 0.75, 1.0] {
             let given = format!("contact.restitution={wanted}");
             // At the speed of the wave, unless another is given.
-            let found = preset(name, &[&*given]);
-            assert!(
-                (restitution(&found, speed) - wanted).abs() < 1e-8,
-                "{name} {wanted}"
-            );
-            let slow = preset(name, &[&*given, "contact.restitution_speed=0.01"]);
-            assert!(
-                (restitution(&slow, 0.01) - wanted).abs() < 1e-8,
-                "{name} {wanted}"
-            );
+            let found = restitution(&preset(name, &[law, &given]), speed);
+            assert!((found - wanted).abs() < 1e-8, "{law} {wanted}: {found}");
+            let slow = preset(name, &[law, &given, "contact.restitution_speed=0.01"]);
+            let found = restitution(&slow, 0.01);
+            assert!((found - wanted).abs() < 1e-8, "{law} {wanted}: {found}");
         }
     }
 }
