@@ -155,11 +155,17 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
             true => store.import_archive(file),
             false => store.import_table(file),
         };
-        if packed.is_err() && is_empty {
-            // What was made for this call holds nothing.
-            let _ = std::fs::remove_dir_all(path);
-        }
-        let packed = packed?;
+        let packed = match packed {
+            Ok(packed) => packed,
+            Err(error) => {
+                if is_empty {
+                    // What was made for this call holds nothing.
+                    drop(store);
+                    let _ = std::fs::remove_dir_all(path);
+                }
+                return Err(error.into());
+            }
+        };
         is_empty = false;
         is_whole &= packed.refused.is_empty();
         for (identity, reason) in &packed.refused {
