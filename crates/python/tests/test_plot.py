@@ -19,8 +19,6 @@ def test_every_picture_of_a_run(small: Simulation, tmp_path: Path) -> None:
     assert snapshot.get_xlim() == (0.0, small.length)
     with pytest.raises(TypeError, match="waves is a whole number, not 'a'"):
         plot.snapshot(small, waves="a")  # type: ignore[arg-type]
-    with pytest.raises(ValueError, match="first is"):
-        plot.snapshot(small, first=99)
     profile = plot.profile(small, "axial_velocity")
     assert profile.get_ylabel() == "axial velocity, $v_z/c$"
     points = plot.stationary_flow([2.4, 2.6], [0.9, 0.4], [0.01, 0.02])

@@ -104,7 +104,7 @@ def test_a_long_tube_is_shown_in_parts_that_can_be_read() -> None:
     axes = plot.snapshot(sim)
     assert axes.get_xlim() == (0.0, 40.0) and "4 of 10 waves" in axes.get_xlabel()
     assert plot.snapshot(sim, waves=5, first=5).get_xlim() == (50.0, 100.0)
-    with pytest.raises(ValueError, match="0 to 9"):
+    with pytest.raises(ValueError, match="first is 9 or less, not 10"):
         plot.snapshot(sim, first=10)
 
 
