@@ -204,22 +204,26 @@ impl Collapsed {
 
     /// The exponents with the quality of the collapse.
     pub(crate) fn in_words(&self) -> String {
+        if !self.is_one() {
+            return format!("no collapse (at best {:.0} errors off)", self.found.stretch);
+        }
         let [a, b, quality, overlap] = self.best();
-        let stretch = self.found.stretch;
-        let what = match stretch <= NO_COLLAPSE_BEYOND {
-            true => "collapsed".to_owned(),
-            false => format!("no collapse ({stretch:.0} errors off)"),
-        };
-        format!("{what} at *a* = {a}, *b* = {b} (*S* = {quality}, overlap {overlap})")
+        format!("collapsed at *a* = {a}, *b* = {b} (*S* = {quality}, overlap {overlap})")
     }
 
-    /// The exponents as quantities.
+    /// Whether the curves collapse at the best exponents, which otherwise mean nothing: a search may pull the curves apart.
+    fn is_one(&self) -> bool {
+        self.found.stretch <= NO_COLLAPSE_BEYOND
+    }
+
+    /// The exponents as quantities, where there is a collapse.
     pub(crate) fn quantities(&self, of: &str, symbols: [&str; 2]) -> Vec<Quantity> {
         let words = [
             "power of the strain rate in the ordinate",
             "power of the strain rate in the distance",
         ];
-        (0..2)
+        let places = if self.is_one() { 0..2 } else { 0..0 };
+        places
             .map(|place| Quantity {
                 name: format!("{}, {of}", words[place]),
                 symbol: symbols[place].to_owned(),
@@ -342,7 +346,10 @@ pub(crate) fn chart(
             panels.push(collapsed.panel(claimed.exponents, &title, claimed_labels, slope));
         }
         let [a, b] = collapsed.exponents();
-        let title = format!("{of}, *a* = {a}, *b* = {b}");
+        let title = match collapsed.is_one() {
+            true => format!("{of}, *a* = {a}, *b* = {b}"),
+            false => format!("{of}, no collapse"),
+        };
         let best = [a.value, b.value];
         let labels = ["(*w*_{c} − *w*)/*r*^{*b*}", best_label];
         panels.push(collapsed.panel(best, &title, labels, slope));
