@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use peristalsis_engine::WallContact;
 use peristalsis_physics::contact::Cohesion;
 
 struct Case {
@@ -41,6 +42,12 @@ fn start(case: &Case) -> Simulation {
     case.state.start(Kernel::default())
 }
 
+fn on_wall(simulation: &Simulation) -> Vec<WallContact> {
+    let mut contacts = Vec::new();
+    simulation.for_each_wall_contact(|contact| contacts.push(contact));
+    contacts
+}
+
 #[test]
 fn each_runs_closes_its_ledger_and_goes_on_from_a_snapshot_with_the_same_bits() {
     const STEPS: u64 = 300;
@@ -68,6 +75,7 @@ fn each_runs_closes_its_ledger_and_goes_on_from_a_snapshot_with_the_same_bits() 
                 stopped.snapshot() == whole.snapshot(),
                 "{name}: restored differently at step {stop}"
             );
+            assert_eq!(on_wall(&stopped), on_wall(&whole), "{name} at step {stop}");
         }
         assert_eq!(bits(&whole), bits(&stopped), "{name}");
         let mut again = start(row);

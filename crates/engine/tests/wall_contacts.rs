@@ -84,23 +84,6 @@ fn balance(mut simulation: Simulation) {
     assert!(apart < 2e-2 * axial, "{apart} of {axial}");
 }
 
-/// As well after a restart, before any step.
-#[test]
-fn a_restart_finds_the_same_contacts() {
-    for wall in &walls() {
-        for friction in [None, Some(FRICTION)] {
-            let bodies = packed(80, 1.0, wall, LINEAR, 3);
-            let parameters = parameters(LINEAR, friction, INTEGRATORS[0], 0.05);
-            let simulation = advanced(&bodies, wall, parameters, 200);
-            let again =
-                Simulation::restore(simulation.snapshot(), wall.clone(), parameters).unwrap();
-            let found = forces(&simulation);
-            assert!(found.2 > 10);
-            assert_eq!(found, forces(&again));
-        }
-    }
-}
-
 /// Where they touch is on both spheres' side of the line of centres, half the overlap inside the grain's surface.
 #[test]
 fn contacts_lie_on_the_wall() {
