@@ -9,13 +9,14 @@ const BODY_FORCE: DVec3 = DVec3::new(2e-4, -1e-4, -0.004);
 
 /// Laws and integrators such that every kernel has its turn, under the body force.
 fn kernels(time_step: f64) -> Vec<Parameters> {
-    let methods = methods().filter(|(_, normal, ..)| *normal == LINEAR);
+    let methods = methods().filter(|(_, model, _)| model.normal == LINEAR);
     methods
-        .flat_map(|(_, normal, friction, integrator)| {
-            KERNELS.map(|kernel| Parameters {
+        .flat_map(|(_, model, integrator)| {
+            let kernels = kernels_of(&model).iter();
+            kernels.map(move |&kernel| Parameters {
                 kernel,
                 body_force: BODY_FORCE,
-                ..parameters(normal, friction, integrator, time_step)
+                ..parameters_with(model, integrator, time_step)
             })
         })
         .collect()

@@ -4,20 +4,19 @@ mod common;
 
 use common::*;
 use peristalsis_engine::WallContact;
-use peristalsis_physics::contact::Cohesion;
 
 struct Case {
     name: String,
     state: State,
 }
 
-/// {linear, hertz} x {friction, none} x {mono-, polydisperse} x {strain, strain of an even wall, stress} x {Verlet, Adams-Bashforth}.
+/// All laws x {mono-, polydisperse} x {strain, strain of an even wall, stress} x {Verlet, Adams-Bashforth}.
 fn table() -> Vec<Case> {
     let strain = strained(coarse(2), -1.0, 2.6, 0.1);
     let even = smooth(strain.clone());
     let stress = elastic(elastic_parameters());
     let mut rows = Vec::new();
-    for (law, normal, friction, integrator) in methods() {
+    for (law, model, integrator) in methods() {
         for (sizes, diameter_min) in [("monodisperse", 1.0), ("polydisperse", 0.8)] {
             for (control, wall, number) in [
                 ("strain", &strain, 60),
@@ -27,9 +26,9 @@ fn table() -> Vec<Case> {
                 rows.push(Case {
                     name: format!("{law}, {sizes}, {control}, {integrator:?}"),
                     state: State {
-                        bodies: packed(number, diameter_min, wall, normal, 5),
+                        bodies: packed(number, diameter_min, wall, model.normal, 5),
                         wall: wall.clone(),
-                        parameters: parameters(normal, friction, integrator, 0.04),
+                        parameters: parameters_with(model, integrator, 0.04),
                     },
                 });
             }
@@ -52,7 +51,7 @@ fn on_wall(simulation: &Simulation) -> Vec<WallContact> {
 fn each_runs_closes_its_ledger_and_goes_on_from_a_snapshot_with_the_same_bits() {
     const STEPS: u64 = 300;
     let rows = table();
-    assert_eq!(rows.len(), 48);
+    assert_eq!(rows.len(), 108);
     let mut all_bits = Vec::new();
     for row in &rows {
         let name = &row.name;
@@ -100,18 +99,16 @@ fn each_runs_closes_its_ledger_and_goes_on_from_a_snapshot_with_the_same_bits() 
             whole.tally().grain_contacts > 0 && whole.tally().wall_contacts > 0,
             "{name}: no contacts"
         );
+        let model = row.state.parameters.contact;
         let turns = whole.bodies().rotational_energy() > 0.0;
-        assert_eq!(
-            turns,
-            row.state.parameters.contact.friction.is_some(),
-            "{name}"
-        );
-        let remembers = !whole.snapshot().pair_histories.is_empty();
-        assert_eq!(
-            remembers,
-            row.state.parameters.contact.friction.is_some(),
-            "{name}"
-        );
+        assert_eq!(turns, model.friction.is_some(), "{name}");
+        assert_eq!(whole.takes_threads(), !model.is_general(), "{name}");
+        let snapshot = whole.snapshot();
+        let springs = !snapshot.pair_histories.is_empty();
+        assert_eq!(springs, turns && !model.is_general(), "{name}");
+        let general = !snapshot.general_histories[0].is_empty();
+        let remembers = model.rolling.is_some() || breaks(&model);
+        assert_eq!(general, remembers, "{name}");
         all_bits.push((bits(&whole), name));
     }
     // No two rows are the same simulation.
@@ -131,17 +128,18 @@ fn a_snapshot_of_another_simulation_is_refused() {
             .unwrap()
     };
     let (smooth, frictional) = (
-        find(&["linear, mono", "strain", "Verlet"]),
+        find(&["linear, smooth, mono", "strain", "Verlet"]),
         find(&["linear, rough, mono", "strain", "Verlet"]),
     );
-    let elastic = find(&["linear, mono", "stress", "Verlet"]);
+    let rolling = find(&["linear, rolling, mono", "strain", "Verlet"]);
+    let elastic = find(&["linear, smooth, mono", "stress", "Verlet"]);
     let mut simulation = start(frictional);
     simulation.advance(50).unwrap();
     let snapshot = simulation.snapshot();
     assert!(!snapshot.wall_histories.is_empty());
     let of = |row: &Case| (row.state.wall.clone(), row.state.parameters);
     let (wall, mut cohesive) = of(frictional);
-    cohesive.contact.cohesion = Some(Cohesion::default());
+    cohesive.contact.cohesion = Some(PULL);
     for ((wall, parameters), reason) in [
         (of(smooth), "another law"),
         ((wall, cohesive), "another law"),
@@ -149,6 +147,12 @@ fn a_snapshot_of_another_simulation_is_refused() {
     ] {
         let refused = Simulation::restore(snapshot.clone(), wall, parameters).unwrap_err();
         assert!(refused.to_string().contains(reason), "{refused}");
+    }
+    let mut rolled = start(rolling);
+    rolled.advance(50).unwrap();
+    for (wall, parameters) in [of(smooth), of(frictional)] {
+        let refused = Simulation::restore(rolled.snapshot(), wall, parameters).unwrap_err();
+        assert!(refused.to_string().contains("another law"), "{refused}");
     }
     let restore = |change: &dyn Fn(&mut peristalsis_engine::Snapshot)| {
         let mut changed = snapshot.clone();

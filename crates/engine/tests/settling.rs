@@ -9,11 +9,11 @@ use peristalsis_engine::{EngineError, Ledger};
 /// Across the tube, and a little along it.
 const GRAVITY: DVec3 = DVec3::new(0.0, -0.003, 0.001);
 
-fn heavy(normal: Normal, friction: Option<CundallStrack>, kernel: Kernel) -> Parameters {
+fn heavy(contact: ContactModel, kernel: Kernel) -> Parameters {
     Parameters {
         kernel,
         body_force: GRAVITY,
-        ..parameters(normal, friction, Integrator::Verlet, 0.05)
+        ..parameters_with(contact, Integrator::Verlet, 0.05)
     }
 }
 
@@ -33,9 +33,9 @@ fn standing() -> Wall {
 
 #[test]
 fn the_wall_bears_the_weight() {
-    for (name, normal, friction) in laws() {
-        for kernel in KERNELS {
-            let mut simulation = settled(&standing(), heavy(normal, friction, kernel));
+    for (name, model) in laws() {
+        for &kernel in kernels_of(&model) {
+            let mut simulation = settled(&standing(), heavy(model, kernel));
             assert_eq!(simulation.time(), 0.0);
             assert_eq!(
                 *simulation.ledger(),
@@ -73,7 +73,8 @@ fn the_wall_bears_the_weight() {
 /// Without its springs a pile of frictional grains would give way once more.
 #[test]
 fn the_springs_of_contacts_stay() {
-    let simulation = settled(&standing(), heavy(HERTZ, Some(FRICTION), Kernel::Fast));
+    let rough = ContactModel::new(HERTZ, Some(FRICTION));
+    let simulation = settled(&standing(), heavy(rough, Kernel::Fast));
     let snapshot = simulation.snapshot();
     assert!(snapshot.pair_histories.len() > 5 && snapshot.wall_histories.len() > 20);
     let stored: f64 = snapshot
@@ -86,11 +87,9 @@ fn the_springs_of_contacts_stay() {
 
 #[test]
 fn grains_settle_the_same_way_whatever_the_wave_does_later() {
-    let slow = settled(&standing(), heavy(LINEAR, None, Kernel::Fast));
-    let fast = settled(
-        &strained(coarse(2), -1.0, 1.6, 0.1),
-        heavy(LINEAR, None, Kernel::Fast),
-    );
+    let smooth = heavy(ContactModel::new(LINEAR, None), Kernel::Fast);
+    let slow = settled(&standing(), smooth);
+    let fast = settled(&strained(coarse(2), -1.0, 1.6, 0.1), smooth);
     assert_eq!(slow.bodies().position, fast.bodies().position);
     assert_eq!(fast.time(), 0.0);
     // The moving wall does work from the first step on.

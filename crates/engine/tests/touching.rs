@@ -9,12 +9,12 @@ fn the_forces_of_contacts_add_up_to_the_accelerations_of_the_grains() {
     let strain = strained(coarse(2), -1.0, 2.6, 0.1);
     let stress = elastic(elastic_parameters());
     for (wall, number) in [(&strain, 60), (&stress, 120)] {
-        for (name, normal, friction) in laws() {
-            for kernel in KERNELS {
-                let bodies = packed(number, 1.0, wall, normal, 5);
+        for (name, model) in laws() {
+            for &kernel in kernels_of(&model) {
+                let bodies = packed(number, 1.0, wall, model.normal, 5);
                 let parameters = Parameters {
                     kernel,
-                    ..parameters(normal, friction, INTEGRATORS[0], 0.01)
+                    ..parameters_with(model, INTEGRATORS[0], 0.01)
                 };
                 let simulation = advanced(&bodies, wall, parameters, 2_000);
                 assert_forces(&simulation, &format!("{name} {kernel:?} {number} grains"));
@@ -68,8 +68,17 @@ fn assert_forces(simulation: &Simulation, case: &str) {
         tally.sliding_contacts
     );
 
+    let model = simulation.parameters().contact;
+    let across_gaps = touching.iter().any(|touch| touch.overlap <= 0.0);
+    match model.cohesion {
+        None => assert!(!across_gaps, "{case}"),
+        Some(cohesion) => assert!(across_gaps || cohesion != PULL, "{case}"),
+    }
+    let rolls = touching.iter().any(|touch| touch.couple != DVec3::ZERO);
+    assert_eq!(rolls, model.rolling.is_some(), "{case}");
+
     let mut forces = vec![DVec3::ZERO; bodies.grains];
-    let mut largest_overlap = 0.0_f64;
+    let (mut largest_overlap, mut expected_by_wall) = (0.0_f64, DVec3::ZERO);
     for touch in &touching {
         let in_plane = touch.force - touch.normal_force * touch.separation.normalize();
         assert!(
@@ -84,6 +93,8 @@ fn assert_forces(simulation: &Simulation, case: &str) {
         forces[touch.first] += touch.force;
         if touch.second < bodies.grains {
             forces[touch.second] -= touch.force;
+        } else {
+            expected_by_wall += touch.force;
         }
         let mut prescribed = simulation.wall().prescribed_spheres();
         let position = match bodies.position.get(touch.second) {
@@ -98,16 +109,22 @@ fn assert_forces(simulation: &Simulation, case: &str) {
         away.z -= (away.z / length).round() * length;
         assert!(away.length() < 1e-12, "{case}");
     }
+    let mut by_wall = DVec3::ZERO;
+    simulation.for_each_wall_contact(|contact| {
+        by_wall += contact.normal_force + contact.tangential_force;
+    });
+    assert!((by_wall - expected_by_wall).length() < 1e-12, "{case}");
     assert!(
         (largest_overlap - tally.largest_overlap).abs() < 1e-12,
         "{case}"
     );
     // Forces of the step itself were those of velocities predicted for its end: the same to the order of the step.
     let scale = longest(&forces);
+    let most = if model.is_general() { 5e-3 } else { 2e-3 };
     for (grain, force) in forces.iter().enumerate() {
         let expected = bodies.mass[grain] * bodies.acceleration[grain];
         assert!(
-            (*force - expected).length() < 2e-3 * scale,
+            (*force - expected).length() < most * scale,
             "{case}: grain {grain}: {force} instead of {expected}"
         );
     }

@@ -15,8 +15,8 @@ pub(crate) use peristalsis_engine::{
     Bodies, EngineError, Instructions, Integrator, Kernel, Parameters, Simulation, Wall,
 };
 pub(crate) use peristalsis_physics::contact::{
-    ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
-    ViscoelasticHertz,
+    Cohesion, ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, PullOff,
+    RollingResistance, Sliding, ViscoelasticHertz,
 };
 pub(crate) use peristalsis_physics::sizes::Sizes;
 pub(crate) use peristalsis_physics::wall::{
@@ -49,14 +49,56 @@ pub(crate) const FRICTION: CundallStrack = CundallStrack {
     sliding: Sliding::Spring,
 };
 
+/// With one coefficient forces are continuous where a contact begins to slide.
+const ONE_FRICTION: CundallStrack = CundallStrack {
+    static_friction: 0.4,
+    ..FRICTION
+};
+
+const ROLLING: RollingResistance = RollingResistance {
+    rolling_friction: 0.1,
+    rolling_stiffness: 0.8,
+    rolling_damping: 0.05,
+};
+
+/// A pull that is constant in contact and reaches beyond it.
+pub(crate) const PULL: Cohesion = Cohesion {
+    cohesion_force: 1e-3,
+    cohesion_range: 0.02,
+    surface_energy: 0.0,
+    pull_off: PullOff::Displacement,
+};
+
+const JKR: Cohesion = Cohesion {
+    cohesion_force: 0.0,
+    cohesion_range: 0.0,
+    surface_energy: 3e-4,
+    pull_off: PullOff::Displacement,
+};
+
+/// The same, which breaks at the pull-off force.
+const JKR_FORCE: Cohesion = Cohesion {
+    pull_off: PullOff::Force,
+    ..JKR
+};
+
 pub(crate) fn parameters(
     normal: Normal,
     friction: Option<CundallStrack>,
     integrator: Integrator,
     time_step: f64,
 ) -> Parameters {
+    let contact = ContactModel::new(normal, friction);
+    parameters_with(contact, integrator, time_step)
+}
+
+pub(crate) fn parameters_with(
+    contact: ContactModel,
+    integrator: Integrator,
+    time_step: f64,
+) -> Parameters {
     Parameters {
-        contact: ContactModel::new(normal, friction),
+        contact,
         integrator,
         time_step,
         skin: 0.3,
@@ -166,26 +208,57 @@ pub(crate) fn wide(length: f64) -> Wall {
     prescribed(lattice(60, 2, 1, length), 10.0, -1.0, 0.0, 0.1)
 }
 
-/// The laws of both presets and what lies between, each with a name.
-pub(crate) fn laws() -> [(&'static str, Normal, Option<CundallStrack>); 4] {
-    [
+/// The laws of both presets and what lies between; every kind of cohesion; each without rolling resistance and with it.
+pub(crate) fn laws() -> Vec<(String, ContactModel)> {
+    let mut laws = Vec::new();
+    for (name, normal, cohesion) in [
         ("linear", LINEAR, None),
-        ("linear, rough", LINEAR, Some(FRICTION)),
         ("hertz", HERTZ, None),
-        ("hertz, rough", HERTZ, Some(FRICTION)),
-    ]
+        ("linear, pull", LINEAR, Some(PULL)),
+        ("hertz, pull", HERTZ, Some(PULL)),
+        ("hertz, JKR", HERTZ, Some(JKR)),
+        ("hertz, JKR by force", HERTZ, Some(JKR_FORCE)),
+    ] {
+        let smooth = ContactModel {
+            cohesion,
+            ..ContactModel::new(normal, None)
+        };
+        let rolling = ContactModel {
+            friction: Some(ONE_FRICTION),
+            rolling: Some(ROLLING),
+            ..smooth
+        };
+        laws.push((format!("{name}, smooth"), smooth));
+        laws.push((format!("{name}, rolling"), rolling));
+        if cohesion.is_none() {
+            let rough = ContactModel::new(normal, Some(FRICTION));
+            laws.push((format!("{name}, rough"), rough));
+        }
+    }
+    laws
 }
 
-/// These laws with both integrators.
-pub(crate) fn methods()
--> impl Iterator<Item = (&'static str, Normal, Option<CundallStrack>, Integrator)> {
-    laws().into_iter().flat_map(|(name, normal, friction)| {
-        INTEGRATORS.map(|integrator| (name, normal, friction, integrator))
+/// These laws with both integrators; those that only the reference kernel computes, with one.
+pub(crate) fn methods() -> impl Iterator<Item = (String, ContactModel, Integrator)> {
+    laws().into_iter().flat_map(|(name, model)| {
+        let integrators = if model.is_general() { 1 } else { 2 };
+        let both = INTEGRATORS.into_iter().take(integrators);
+        both.map(move |integrator| (name.clone(), model, integrator))
     })
+}
+
+/// Whether its contacts lose the energy of cohesion when they break.
+pub(crate) fn breaks(model: &ContactModel) -> bool {
+    model.cohesion.is_some_and(|it| it.is_jkr())
 }
 
 /// Both kernels.
 pub(crate) const KERNELS: [Kernel; 2] = [Kernel::Fast, Kernel::Reference];
+
+/// The kernels that compute a law: rolling resistance and cohesion only the reference.
+pub(crate) fn kernels_of(model: &ContactModel) -> &'static [Kernel] {
+    &KERNELS[usize::from(model.is_general())..]
+}
 
 /// A small elastic tube, with all that keeps the one of the frictional preset.
 pub(crate) fn elastic_parameters() -> ElasticParameters {
