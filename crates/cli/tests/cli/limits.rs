@@ -196,10 +196,10 @@ fn a_disk_that_fills_while_results_are_written() {
 fn a_disk_that_fills_with_a_trajectory_loses_nothing_else() {
     // Room for each of the results, but not for the frames; the last disk is full before the first sample, and has no room for
     // some pictures either.
-    for (format, every, blocks) in [
-        ("gsd", "0.03", 1024),
-        ("lammps", "0.03", 1024),
-        ("lammps", "0.01 --checkpoint-every 1h", 256),
+    for (format, every, blocks, fewest) in [
+        ("gsd", "0.03", 1024, 4),
+        ("lammps", "0.03", 1024, 4),
+        ("lammps", "0.01 --checkpoint-every 1h", 256, 3),
     ] {
         let place = Place::new();
         let run = format!("run SMALL --trajectory {format} --trajectory-every {every}");
@@ -213,7 +213,7 @@ fn a_disk_that_fills_with_a_trajectory_loses_nothing_else() {
             ]);
         let summary = read_json(&place.path("stopped/summary.json"));
         assert_eq!(summary["status"], "interrupted");
-        assert!(summary["trajectory"]["frames"].as_u64().unwrap() > 2);
+        assert!(summary["trajectory"]["frames"].as_u64().unwrap() >= fewest);
         place.refuses(
             "run --resume stopped --trajectory gsd",
             &["leave out --trajectory, --trajectory-every"],
