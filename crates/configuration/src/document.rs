@@ -123,8 +123,8 @@ fn read_override(source: &Arc<Source>) -> Result<Table, String> {
             Ok(table)
         }
         _ if starts_with_number(word) => Err(format!(
-            "{word} is no number: numbers have no unit behind them; lengths are in grain diameters d, times in t, and keys of \
-             units.* in SI units"
+            "{word} is no number: numbers have no unit behind them (lengths are in grain diameters d, times in t, keys of \
+             units.* in SI units), and a text that begins like one needs quotation marks"
         )),
         _ => Err(format!("this override is not `key=value`: {error}")),
     }
@@ -134,7 +134,8 @@ fn read_override(source: &Arc<Source>) -> Result<Table, String> {
 fn starts_with_number(word: &str) -> bool {
     let rest =
         word.trim_start_matches(|letter: char| letter.is_ascii_digit() || "+-._".contains(letter));
-    rest.len() < word.len() && rest.starts_with(char::is_alphabetic)
+    let number = &word[..word.len() - rest.len()];
+    number.contains(|letter: char| letter.is_ascii_digit()) && rest.starts_with(char::is_alphabetic)
 }
 
 /// Letters, digits and `_-./`, beginning with a letter, `/`, `./` or `../`: a name, of a file too, that needs no quotes on the
