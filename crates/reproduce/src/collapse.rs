@@ -9,7 +9,7 @@ use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern
 
 use crate::critical::Line;
 use crate::draft::Draft;
-use crate::exhibit::{cell_of, coloured, ends, grid, points, probability, rate_colours};
+use crate::exhibit::{cell, cell_of, coloured, ends, grid, points, probability, rate_colours};
 use crate::finding::{Quantity, ReportTable};
 use crate::thresholds::{
     BY_CHANCE, COLLAPSED_WITHIN, MOSTLY_SEEN, NO_COLLAPSE_BEYOND, OVERLAP, RESOLVED,
@@ -195,16 +195,17 @@ impl Collapsed {
         }
     }
 
-    /// The exponents, S and the overlap as text.
+    /// The exponents, where there is a collapse, S and the overlap as text.
     fn best(&self) -> [String; 4] {
-        let [a, b] = self.exponents().map(|exponent| exponent.to_string());
+        let exponents = self.exponents().map(|one| self.is_found().then_some(one));
+        let [a, b] = exponents.map(cell);
         let quality = self.found.quality;
         [a, b, number(quality.quality, 1), number(quality.overlap, 2)]
     }
 
     /// The exponents with the quality of the collapse.
     pub(crate) fn in_words(&self) -> String {
-        if !self.is_one() {
+        if !self.is_found() {
             return format!("no collapse (at best {:.0} errors off)", self.found.stretch);
         }
         let [a, b, quality, overlap] = self.best();
@@ -212,7 +213,7 @@ impl Collapsed {
     }
 
     /// Whether the curves collapse at the best exponents, which otherwise mean nothing: a search may pull the curves apart.
-    fn is_one(&self) -> bool {
+    fn is_found(&self) -> bool {
         self.found.stretch <= NO_COLLAPSE_BEYOND
     }
 
@@ -222,8 +223,10 @@ impl Collapsed {
             "power of the strain rate in the ordinate",
             "power of the strain rate in the distance",
         ];
-        let places = if self.is_one() { 0..2 } else { 0..0 };
-        places
+        if !self.is_found() {
+            return Vec::new();
+        }
+        (0..2)
             .map(|place| Quantity {
                 name: format!("{}, {of}", words[place]),
                 symbol: symbols[place].to_owned(),
@@ -346,7 +349,7 @@ pub(crate) fn chart(
             panels.push(collapsed.panel(claimed.exponents, &title, claimed_labels, slope));
         }
         let [a, b] = collapsed.exponents();
-        let title = match collapsed.is_one() {
+        let title = match collapsed.is_found() {
             true => format!("{of}, *a* = {a}, *b* = {b}"),
             false => format!("{of}, no collapse"),
         };

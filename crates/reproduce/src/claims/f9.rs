@@ -331,17 +331,18 @@ struct Lifetime {
     lattice: Lattice,
     strain_rate: f64,
     width: f64,
-    /// Jams that broke up, and all of them.
-    ended: [usize; 2],
+    /// Runs whose grains do not coast in the end.
+    jams: usize,
+    /// J/Jmax at the end of those that broke up.
+    broken: Vec<f64>,
     /// Runs whose grains coast in the end, which are no jams.
     void: usize,
     /// Mean number of periods until then, the others counted as censored; `None` where none broke up.
     mean: Option<Uncertain>,
     /// For how many periods they were watched.
     watched: f64,
-    /// J/Jmax at the end, and that of each that broke up.
+    /// J/Jmax at the end.
     flow: Uncertain,
-    flows: Vec<f64>,
 }
 
 impl Lifetime {
@@ -350,33 +351,30 @@ impl Lifetime {
         let is_void = |row: &&Row<'_>| coasts(row, row.number("transition_threshold"));
         let (void, jams): (Vec<Row<'_>>, Vec<Row<'_>>) = rows.iter().partition(is_void);
         let transitions: Vec<Transition> = jams.iter().map(Row::transition).collect();
-        let ended = jams
-            .iter()
-            .filter(|row| row.transition().observed().is_some());
-        let flows: Vec<f64> = ended.map(Row::flow_rate_ratio).collect();
+        let broken = jams.iter().zip(&transitions);
+        let broken = broken.filter(|(_, one)| one.observed().is_some());
         let fit = fit_lifetime(Family::Gamma, &transitions)
             .or_else(|_| fit_lifetime(Family::Exponential, &transitions));
         Self {
             lattice: first.lattice(),
             strain_rate: first.strain_rate(),
             width: first.width(),
-            ended: [flows.len(), jams.len()],
+            jams: jams.len(),
+            broken: broken.map(|(row, _)| row.flow_rate_ratio()).collect(),
             void: void.len(),
             mean: fit.ok().map(|fit| fit.mean.scaled(first.strain_rate())),
             watched: largest(rows, |row| row.watched() * row.strain_rate()),
             flow: scattered(rows, Row::flow_rate_ratio),
-            flows,
         }
     }
 
     fn row(&self) -> Vec<String> {
-        let [ended, all] = self.ended;
         let lasting = || format!("> {}", number(self.watched, 0));
         vec![
             wall_name(self.lattice, STAGGERED),
             number(self.strain_rate, 3),
             number(self.width, 2),
-            format!("{ended} of {all}"),
+            format!("{} of {}", self.broken.len(), self.jams),
             self.void.to_string(),
             self.mean.map_or_else(lasting, |mean| mean.to_string()),
             self.flow.to_string(),
@@ -406,11 +404,11 @@ fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row
     let sum = |of: fn(&Lifetime) -> usize| found.iter().map(of).sum::<usize>();
     let (void, ended, jams) = (
         sum(|one| one.void),
-        sum(|one| one.ended[0]),
-        sum(|one| one.ended[1]),
+        sum(|one| one.broken.len()),
+        sum(|one| one.jams),
     );
     let (tubes, all) = (found.len(), jams + void);
-    let broken = found.iter().filter(|one| one.ended[0] > 0);
+    let broken = found.iter().filter(|one| !one.broken.is_empty());
     let places = grouped(broken, |one| one.lattice).into_iter();
     let places = places.map(|(lattice, tubes)| {
         let wall = wall_name(lattice, STAGGERED);
@@ -418,11 +416,19 @@ fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row
         format!("{wall} at *ε̇* = {}", listed(rates.map(|(rate, _)| rate)))
     });
     let places = places.collect::<Vec<_>>().join(", ");
-    let falling = found.iter().flat_map(|one| one.flows.iter().copied());
+    let falling = found.iter().flat_map(|one| one.broken.iter().copied());
     let falling: Vec<f64> = falling.filter(|flow| *flow > FALLEN).collect();
-    let ends = [f64::min, f64::max].map(|of| falling.iter().copied().reduce(of));
-    let [least, most] = ends.map(|end| end.map_or("–".to_owned(), |flow| number(flow, 2)));
-    let falling = falling.len();
+    let falling = match falling.len() {
+        0 => String::new(),
+        number_of => {
+            let [least, most] = extremes(falling).map(|flow| number(flow, 2));
+            PROSE.text("falling", values!(falling = number_of, least, most))
+        }
+    };
+    let places = match &*places {
+        "" => String::new(),
+        places => format!(" ({places}{falling})"),
+    };
     draft.paragraph(
         "lifetimes",
         values!(
@@ -431,10 +437,7 @@ fn of_lifetimes(draft: &mut Draft, walls: &[OnWall<Loop<'_>>], mut rows: Vec<Row
             void,
             ended,
             all,
-            places,
-            falling,
-            least,
-            most
+            places
         ),
     );
     draft.table("lifetimes", &[], found.iter().map(Lifetime::row));

@@ -209,15 +209,12 @@ impl<'b, 'a> AtRate<'b, 'a> {
             "" => PROSE.text("no rises", &[]),
             rises => PROSE.text("rises", values!(rises)),
         };
-        let ends: Vec<&str> = widths
-            .first()
-            .into_iter()
-            .chain(widths.last().filter(|_| widths.len() > 1))
-            .map(String::as_str)
-            .collect();
-        let sweeps = match &*ends.join(" to ") {
-            "" => PROSE.text("no sweeps", &[]),
-            widths => PROSE.text("sweeps", values!(widths)),
+        let sweeps = match &*widths {
+            [] => PROSE.text("no sweeps", &[]),
+            [widths] => PROSE.text("sweeps", values!(widths)),
+            [first, .., last] => {
+                PROSE.text("sweeps", values!(widths = format!("{first} to {last}")))
+            }
         };
         let rate = number(1e3 * self.rate, 2);
         PROSE.text("at a strain rate", values!(rate, rises, sweeps))
