@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use peristalsis_study::{Bracket, State, Store, Survey, brackets};
+use peristalsis_study::{Bracket, Finding, State, Store, Survey, brackets};
 use serde_json::{Value, json};
 
 use super::{StatusArguments, WhyArguments};
@@ -82,7 +82,15 @@ fn in_words(store: &Store, survey: &Survey) -> String {
     let in_state = |(state, number): (State, usize)| format!("{number} {}", state.name());
     let counts: Vec<String> = survey.counts().into_iter().map(in_state).collect();
     let (runs, counts) = (counted(survey.plan.runs().len(), "run"), counts.join(", "));
-    text.push_str(&format!("{runs}: {counts}\n"));
+    text.push_str(&format!("{runs}: {counts}"));
+    let plan = survey.plan.runs().iter();
+    let found: Vec<Finding> = plan.filter_map(|run| survey.finding(&run.identity)).collect();
+    if !found.is_empty() {
+        let is_transition = |finding: &&Finding| **finding == Finding::Transition;
+        let transitions = found.iter().filter(is_transition).count();
+        text.push_str(&format!("; {transitions} with a transition"));
+    }
+    text.push('\n');
     let others = survey.others();
     if others > 0 {
         text += &format!(

@@ -106,7 +106,7 @@ fn a_study_runs_tells_and_exports() {
     let place = place_of(&quick());
     let outcome = place
         .does("study run study.toml")
-        .shows(&["tested in stores/tested", "4 runs: 4 done"])
+        .shows(&["tested in stores/tested", "4 runs: 4 done; "])
         .says(&["4 of 4 runs done, 100 % of the work", "all runs are done"]);
     assert!(!outcome.stderr.contains('\r'));
     // The second time there is nothing to do.
