@@ -84,7 +84,9 @@ fn in_words(store: &Store, survey: &Survey) -> String {
     let (runs, counts) = (counted(survey.plan.runs().len(), "run"), counts.join(", "));
     text.push_str(&format!("{runs}: {counts}"));
     let plan = survey.plan.runs().iter();
-    let found: Vec<Finding> = plan.filter_map(|run| survey.finding(&run.identity)).collect();
+    let found: Vec<Finding> = plan
+        .filter_map(|run| survey.finding(&run.identity))
+        .collect();
     if !found.is_empty() {
         let is_transition = |finding: &&Finding| **finding == Finding::Transition;
         let transitions = found.iter().filter(is_transition).count();
